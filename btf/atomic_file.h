@@ -1,0 +1,26 @@
+// Files that appear whole or not at all: written aside, synced, renamed.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace weft {
+
+/// Calls `write` with a temporary path in the same folder, syncs what it wrote, and renames it to `path`.
+/// Nothing is left where `write` throws. @throws Error failed, naming `path`, where the disk refuses.
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path&)>& write);
+
+/// The same for a text.
+void write_text_atomically(const std::filesystem::path& path, std::string_view text);
+
+/// Whole contents. @throws Error bad_input, naming `path`, where it cannot be read.
+std::string read_text(const std::filesystem::path& path);
+
+/// xxh3-128 of a file's bytes, 32 hex digits.
+std::string file_checksum(const std::filesystem::path& path);
+
+}  // namespace weft

@@ -1,0 +1,62 @@
+// A BTF dataset on disk: a folder with one multi-part EXR a view and a `btf.json` that comes last.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "btf/btf.h"
+
+namespace weft {
+
+/// What `btf.json` tells, without the pixels.
+struct BtfHeader {
+  int version = 1;
+  std::string quantity = "radiance per perpendicular irradiance, 1/sr, cosine included";
+  int width = 0;
+  int height = 0;
+  HemisphereSampling views;
+  HemisphereSampling lights;
+  PixelType pixel_type = PixelType::half;
+  float tile_size = 1;
+  std::string provenance = "{}";  ///< canonical JSON: settings only, no paths, threads or shards
+};
+
+/// Writes a dataset view by view; each file appears whole or not at all, and the JSON comes last.
+class BtfWriter {
+ public:
+  /// Creates the folder. Views that are there already, whole and of the same settings, are kept
+  /// (`has_view`), so that an interrupted run continues.
+  /// @throws Error  where the folder holds another dataset, or cannot be written.
+  BtfWriter(std::filesystem::path folder, BtfHeader header);
+
+  bool has_view(std::size_t view) const;
+
+  /// @param values  [light][y][x][rgb], lights x height x width x 3 floats, finite and >= 0.
+  /// @throws Error  bad_input where a half would overflow (count and the worst sample named) or a value is NaN,
+  ///                infinite or negative; failed where the disk is full.
+  void write_view(std::size_t view, std::span<const float> values);
+
+  /// Checksums every file and writes `btf.json`. @throws Error where a view is missing.
+  void finish();
+
+ private:
+  std::filesystem::path view_path(std::size_t view) const;
+
+  std::filesystem::path folder_;
+  BtfHeader header_;
+};
+
+/// Path of `btf.json`'s view file: "view_000.exr", at least three digits.
+std::string view_file_name(std::size_t view);
+
+/// @throws Error  naming the file and field that is missing, truncated or of another size.
+BtfHeader read_btf_header(const std::filesystem::path& folder);
+Btf read_btf(const std::filesystem::path& folder);
+
+/// Writes a whole BTF from memory.
+void write_btf(const std::filesystem::path& folder, const Btf& btf);
+
+/// Recomputes each file's xxh3-128 and returns the names of those that differ from `btf.json`.
+std::vector<std::string> corrupted_files(const std::filesystem::path& folder);
+
+}  // namespace weft

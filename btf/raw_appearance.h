@@ -1,0 +1,41 @@
+// Codec zero: a raw BTF with its mip chain, interpolated over texels, directions and levels.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "btf/appearance.h"
+#include "btf/btf.h"
+
+namespace weft {
+
+/// Interpolates f = B / cos(theta_light), divided at the samples, barycentrically over lights and views, and
+/// multiplies by the query's own cosine, so that a Lambert surface is exact everywhere.
+class RawAppearance : public Appearance {
+ public:
+  /// Builds the mip chain by area mean (odd and 1-wide sizes too) down to 1 x 1.
+  explicit RawAppearance(std::shared_ptr<const Btf> btf);
+
+  using Appearance::evaluate;
+  Rgb evaluate(Texcoord uv, Direction light, Direction view, float lod) const override;
+  bool has_lod() const override { return true; }
+  Imath::V2i texels() const override { return {levels_[0]->width(), levels_[0]->height()}; }
+
+  /// Level 0 is the finest.
+  const std::vector<std::shared_ptr<const Btf>>& levels() const { return levels_; }
+
+ private:
+  std::vector<std::shared_ptr<const Btf>> levels_;
+};
+
+/// The four texels around (u, v) and their bilinear weights; repeats. `index` = y * width + x.
+struct TexelStencil {
+  std::array<std::uint32_t, 4> index;
+  std::array<float, 4> weight;
+};
+TexelStencil bilinear_texels(Texcoord uv, int width, int height);
+
+/// Half as wide and high (rounded up... a 5-wide level gives 3): each coarse texel is the area mean of what it covers.
+Btf next_mip_level(const Btf& finer);
+
+}  // namespace weft

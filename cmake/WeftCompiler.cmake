@@ -1,0 +1,21 @@
+# Warnings, architecture, sanitizers and the fast linker, for every target of ours.
+
+add_library(weft_compiler INTERFACE)
+target_compile_options(weft_compiler INTERFACE -Wall -Wextra -Werror)
+# Contraction into fused multiply-adds is left on: results are the same for one build on one kind of CPU.
+target_compile_options(weft_compiler INTERFACE -march=${WEFT_ARCH})
+if(WEFT_SANITIZE)
+  target_compile_options(weft_compiler INTERFACE -fsanitize=${WEFT_SANITIZE} -fno-omit-frame-pointer -g1)
+  target_link_options(weft_compiler INTERFACE -fsanitize=${WEFT_SANITIZE})
+endif()
+# OpenGL without X headers; Eigen's own threads off (TBB runs the outer loops).
+target_compile_definitions(weft_compiler INTERFACE EIGEN_DONT_PARALLELIZE)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+find_program(MOLD_PROGRAM mold)
+if(MOLD_PROGRAM)
+  add_link_options(-fuse-ld=mold)
+endif()
