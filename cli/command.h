@@ -13,7 +13,7 @@ enum ExitCode { ok = 0, failure = 1, usage = 2, difference = 3 };
 struct Session {
   bool json = false;
   bool quiet = false;
-  int threads = 0;         ///< 0: all cores
+  int threads = 0;  ///< 0: all cores
   std::uint64_t seed = 0;
   /// What the command measured; printed as one object with `--json`.
   nlohmann::ordered_json measured = nlohmann::ordered_json::object();

@@ -1,4 +1,5 @@
-// weft: parses the command line, runs one subcommand, turns exceptions into a sentence and an exit code.
+// weft: parses the command line, runs one subcommand, turns exceptions into a sentence and an exit
+// code.
 
 #include <fmt/core.h>
 #include <oneapi/tbb/global_control.h>
@@ -26,15 +27,18 @@ int run(int argc, char** argv) {
   Session session;
   app.add_flag("--json", session.json, "Print one JSON object of what was measured");
   app.add_flag("--quiet", session.quiet, "Print nothing but errors");
-  app.add_option("--threads", session.threads, "Threads; 0: all cores")->capture_default_str()->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", session.threads, "Threads; 0: all cores")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--seed", session.seed, "Seed of every random number")->capture_default_str();
 
   std::optional<oneapi::tbb::global_control> threads;
   app.parse_complete_callback([&] {
-    if (session.threads > 0) threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, session.threads);
+    if (session.threads > 0)
+      threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, session.threads);
   });
-  for (const auto add : {add_acquire, add_compress, add_render, add_preview, add_extract, add_compare, add_info, add_list,
-                         add_validate, add_demo}) {
+  for (const auto add : {add_acquire, add_compress, add_render, add_preview, add_extract,
+                         add_compare, add_info, add_list, add_validate, add_demo}) {
     add(app, session);
   }
   try {

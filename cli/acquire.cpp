@@ -1,0 +1,9 @@
+// weft acquire: not here yet.
+
+#include "cli/command.h"
+
+namespace weft::cli {
+
+void add_acquire(CLI::App& /*app*/, Session& /*session*/) {}
+
+}  // namespace weft::cli
