@@ -1,3 +1,5 @@
+// Builds the sentence of an Error.
+
 #include "btf/error.h"
 
 #include <utility>
