@@ -1,4 +1,5 @@
-// A modelled mesostructure: one periodic tile of triangles with materials, and where its BTF plane lies.
+// A modelled mesostructure: one periodic tile of triangles with materials, and where its BTF plane
+// lies.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +14,9 @@
 
 namespace weft {
 
-/// Everything is in tile units: x, y in [0, 1] cover the tile, which repeats without end; z is up in the same
-/// unit. The mesh may stick out of [0, 1]^2 sideways; what does wraps into the neighbours.
+/// Everything is in tile units: x, y in [0, 1] cover the tile, which repeats without end; z is up
+/// in the same unit. The mesh may stick out of [0, 1]^2 sideways; what does wraps into the
+/// neighbours.
 struct Mesostructure {
   std::string type;
   TriangleMesh mesh;            ///< `normals` present: smooth shading
@@ -29,10 +31,11 @@ struct MesostructureType {
   std::string name;
   std::string summary;     ///< one line
   std::string parameters;  ///< lines "name = default   meaning"
-  /// Builds the tile's mesh in tile units from the file's keys. Materials are named, not read here. Offsets,
-  /// floor, tile size and reference height are the caller's work.
+  /// Builds the tile's mesh in tile units from the file's keys. Materials are named, not read here.
+  /// Offsets, floor, tile size and reference height are the caller's work.
   std::function<TriangleMesh(const Settings&)> build;
-  /// Material names that the mesh may use, with their default settings in TOML; empty where the file must say.
+  /// Material names that the mesh may use, with their default settings in TOML; empty where the
+  /// file must say.
   std::vector<std::pair<std::string, std::string>> default_materials;
 };
 
@@ -40,7 +43,9 @@ struct MesostructureType {
 std::span<const MesostructureType> mesostructure_types();
 
 /// Reads a mesostructure file. @param overrides  "KEY=VALUE" as in `--set`.
-/// @throws Error  with file:line for what is wrong (unknown key or type, a mesh without faces, a height that is NaN).
-Mesostructure read_mesostructure(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+/// @throws Error  with file:line for what is wrong (unknown key or type, a mesh without faces, a
+/// height that is NaN).
+Mesostructure read_mesostructure(const std::filesystem::path& path,
+                                 const std::vector<std::string>& overrides = {});
 
 }  // namespace weft

@@ -1,4 +1,5 @@
-// The one interface by which anything that can be shaded is asked: raw BTFs, compressed ones, plain BRDFs.
+// The one interface by which anything that can be shaded is asked: raw BTFs, compressed ones, plain
+// BRDFs.
 #pragma once
 
 #include <span>
@@ -29,7 +30,8 @@ class Appearance {
   /// False where level 0 answers for every lod.
   virtual bool has_lod() const = 0;
 
-  /// Texels of one tile, columns and rows; (1, 1) for a homogeneous material. Tells a footprint's lod.
+  /// Texels of one tile, columns and rows; (1, 1) for a homogeneous material. Tells a footprint's
+  /// lod.
   virtual Imath::V2i texels() const = 0;
 };
 

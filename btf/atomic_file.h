@@ -9,8 +9,9 @@
 
 namespace weft {
 
-/// Calls `write` with a temporary path in the same folder, syncs what it wrote, and renames it to `path`.
-/// Nothing is left where `write` throws. @throws Error failed, naming `path`, where the disk refuses.
+/// Calls `write` with a temporary path in the same folder, syncs what it wrote, and renames it to
+/// `path`. Nothing is left where `write` throws. @throws Error failed, naming `path`, where the
+/// disk refuses.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 

@@ -1,4 +1,5 @@
-// A raw bidirectional texture function in memory: B(texel, light, view) for every pair of two samplings.
+// A raw bidirectional texture function in memory: B(texel, light, view) for every pair of two
+// samplings.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@ enum class PixelType { half, float32 };
 
 /// W x H texels x views x lights of RGB, in half or float. Row 0 is the top (v near 1).
 ///
-/// Values lie ABRDF by ABRDF: [y][x][view][light][rgb], so that the few neighbours that an interpolation asks
-/// for are close to each other.
+/// Values lie ABRDF by ABRDF: [y][x][view][light][rgb], so that the few neighbours that an
+/// interpolation asks for are close to each other.
 class Btf {
  public:
   /// All values zero. @throws Error for a size of zero.
@@ -36,7 +37,9 @@ class Btf {
   void abrdf(int x, int y, std::span<float> values) const;
 
   /// Size of the raw values in bytes.
-  std::size_t bytes() const { return halfs_.size() * sizeof(half) + floats_.size() * sizeof(float); }
+  std::size_t bytes() const {
+    return halfs_.size() * sizeof(half) + floats_.size() * sizeof(float);
+  }
 
   /// Width of one tile in world units, and where the data came from (canonical JSON text).
   float tile_size = 1;
@@ -48,8 +51,9 @@ class Btf {
 
  private:
   std::size_t offset(std::size_t light, std::size_t view, int x, int y) const {
-    return 3 * (((static_cast<std::size_t>(y) * width_ + x) * views_.size() + view) * lights_.size() +
-                light);
+    return 3 *
+           (((static_cast<std::size_t>(y) * width_ + x) * views_.size() + view) * lights_.size() +
+            light);
   }
 
   int width_;

@@ -19,6 +19,9 @@ struct BtfHeader {
   PixelType pixel_type = PixelType::half;
   float tile_size = 1;
   std::string provenance = "{}";  ///< canonical JSON: settings only, no paths, threads or shards
+  /// Standard error of each pair's tile mean (mean of RGB), [view][light]; empty where it is not
+  /// known.
+  std::vector<float> standard_errors;
 };
 
 /// Writes a dataset view by view; each file appears whole or not at all, and the JSON comes last.
@@ -31,10 +34,14 @@ class BtfWriter {
 
   bool has_view(std::size_t view) const;
 
-  /// @param values  [light][y][x][rgb], lights x height x width x 3 floats, finite and >= 0.
-  /// @throws Error  bad_input where a half would overflow (count and the worst sample named) or a value is NaN,
+  /// @param values           [light][y][x][rgb], lights x height x width x 3 floats, finite and >=
+  /// 0.
+  /// @param standard_errors  of each light's tile mean; empty where not known.
+  /// @throws Error  bad_input where a half would overflow (count and the worst sample named) or a
+  /// value is NaN,
   ///                infinite or negative; failed where the disk is full.
-  void write_view(std::size_t view, std::span<const float> values);
+  void write_view(std::size_t view, std::span<const float> values,
+                  std::span<const float> standard_errors = {});
 
   /// Checksums every file and writes `btf.json`. @throws Error where a view is missing.
   void finish();

@@ -1,9 +1,9 @@
 // A finite set of directions on the upper hemisphere, and how to interpolate between them.
 //
-// Directions are joined by a Delaunay triangulation of their parabolic images (x, y) / (1 + z). Beyond
-// the lowest ring the nearest edge of the hull answers (`Horizon::hold`), or weights fade to zero towards
-// the horizon as in Bonn's reader (`Horizon::fade`). One, two or collinear directions: nearest.
-// What is interpolated is B / cos(theta_light); see `raw_appearance.h`.
+// Directions are joined by a Delaunay triangulation of their parabolic images (x, y) / (1 + z).
+// Beyond the lowest ring the nearest edge of the hull answers (`Horizon::hold`), or weights fade to
+// zero towards the horizon as in Bonn's reader (`Horizon::fade`). One, two or collinear directions:
+// nearest. What is interpolated is B / cos(theta_light); see `raw_appearance.h`.
 #pragma once
 
 #include <array>
@@ -18,8 +18,9 @@ namespace weft {
 
 enum class Horizon { hold, fade };
 
-/// Three neighbours of a direction and their barycentric weights. Weights are in [0, 1]; they sum to 1 with
-/// `Horizon::hold` and to at most 1 with `Horizon::fade`. Unused entries have weight 0 and a valid index.
+/// Three neighbours of a direction and their barycentric weights. Weights are in [0, 1]; they sum
+/// to 1 with `Horizon::hold` and to at most 1 with `Horizon::fade`. Unused entries have weight 0
+/// and a valid index.
 struct Stencil {
   std::array<std::uint16_t, 3> index;
   std::array<float, 3> weight;
@@ -30,7 +31,7 @@ class HemisphereSampling {
   /// Width and height of the grid over the parabolic disc's square [-1, 1]^2 that starts a search.
   static constexpr int grid_size = 256;
 
-  /// @param directions  1 to 65,535 unit vectors, z >= 0, all distinct (to 1e-4 rad).
+  /// @param directions  1 to 16,000 unit vectors, z >= 0, all distinct (to 1e-4 rad).
   /// @throws Error      naming the first direction that is not so.
   explicit HemisphereSampling(std::vector<Direction> directions, Horizon horizon = Horizon::hold);
 
@@ -48,7 +49,8 @@ class HemisphereSampling {
   /// Counter-clockwise in the parabolic plane; empty where the directions do not span a triangle.
   std::span<const std::array<std::uint16_t, 3>> triangles() const { return triangles_; }
 
-  /// Neighbours of `direction` (unit, z >= 0). Constant time: the grid names a triangle nearby, a walk ends it.
+  /// Neighbours of `direction` (unit, z >= 0). Constant time: the grid names a triangle nearby, a
+  /// walk ends it.
   Stencil locate(const Direction& direction) const;
 
   /// Index of the direction with the least angle to `direction`; ties go to the lowest index.
@@ -60,20 +62,25 @@ class HemisphereSampling {
 
   /// The tables that `locate` walks, for a twin of it in GLSL.
   struct Tables {
-    std::vector<Vec2> points;  ///< parabolic image of each direction
-    /// Vertices of a triangle, then its neighbour across the edge opposite to each vertex;
-    /// `none` where that edge is on the hull.
+    /// Set in a neighbour that is not a triangle: the rest of its bits name an edge of the hull.
+    static constexpr std::uint16_t hull_flag = 0x8000;
+    /// Parabolic image of each direction; with `Horizon::fade` the points of the ring below the
+    /// horizon follow, whose index is >= size() and whose weight counts as 0.
+    std::vector<Vec2> points;
+    /// Vertices of a triangle, then its neighbour across the edge opposite to each vertex: a
+    /// triangle, or `hull_flag | k` where that edge runs from hull[k] to hull[k + 1].
     std::vector<std::array<std::uint16_t, 6>> triangles;
     std::vector<std::uint16_t> grid;  ///< grid_size^2 triangles, row by row from y = -1
-    /// Directions around the hull, counter-clockwise; first one again at the end is left out.
-    std::vector<std::uint16_t> hull;
-    static constexpr std::uint16_t none = 0xFFFF;
+    std::vector<std::uint16_t> hull;  ///< points around the hull, counter-clockwise
   };
   const Tables& tables() const { return tables_; }
 
  private:
   void prepare();
-  Stencil hold(const Vec2& p) const;
+  void fill_grid();
+  std::uint16_t walk(std::uint16_t triangle, const Vec2& p, std::array<float, 3>& weight) const;
+  Stencil hold(std::size_t edge, const Vec2& p) const;
+  Stencil nearest_stencil(const Direction& direction) const;
 
   std::vector<Direction> directions_;
   std::vector<std::array<std::uint16_t, 3>> triangles_;

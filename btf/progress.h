@@ -1,4 +1,5 @@
-// Progress of long work: done, rate and remaining time on a terminal's stderr, and nothing in a pipe.
+// Progress of long work: done, rate and remaining time on a terminal's stderr, and nothing in a
+// pipe.
 #pragma once
 
 #include <atomic>

@@ -9,8 +9,8 @@
 
 namespace weft {
 
-/// Interpolates f = B / cos(theta_light), divided at the samples, barycentrically over lights and views, and
-/// multiplies by the query's own cosine, so that a Lambert surface is exact everywhere.
+/// Interpolates f = B / cos(theta_light), divided at the samples, barycentrically over lights and
+/// views, and multiplies by the query's own cosine, so that a Lambert surface is exact everywhere.
 class RawAppearance : public Appearance {
  public:
   /// Builds the mip chain by area mean (odd and 1-wide sizes too) down to 1 x 1.
@@ -26,6 +26,8 @@ class RawAppearance : public Appearance {
 
  private:
   std::vector<std::shared_ptr<const Btf>> levels_;
+  std::vector<float>
+      inverse_cosines_;  // of each light; 0 for one on the horizon, which tells nothing about f
 };
 
 /// The four texels around (u, v) and their bilinear weights; repeats. `index` = y * width + x.
@@ -35,7 +37,8 @@ struct TexelStencil {
 };
 TexelStencil bilinear_texels(Texcoord uv, int width, int height);
 
-/// Half as wide and high (rounded up... a 5-wide level gives 3): each coarse texel is the area mean of what it covers.
+/// Half as wide and high (rounded down, at least 1, as OpenGL's mip levels): each coarse texel is
+/// the area mean of the fine texels that it covers, fractions of texels included.
 Btf next_mip_level(const Btf& finer);
 
 }  // namespace weft

@@ -18,7 +18,11 @@ using Rgb = Imath::C3f;
 using Imath::half;
 
 /// Mean of the three channels; for weights, not for perception.
-inline float mean(const Rgb& c) { return (c.x + c.y + c.z) * (1.0F / 3.0F); }
-inline float max_component(const Rgb& c) { return std::max({c.x, c.y, c.z}); }
+inline float mean(const Rgb& c) {
+  return (c.x + c.y + c.z) * (1.0F / 3.0F);
+}
+inline float max_component(const Rgb& c) {
+  return std::max({c.x, c.y, c.z});
+}
 
 }  // namespace weft

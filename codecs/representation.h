@@ -37,12 +37,14 @@ double compression_ratio(const Representation& representation);
 
 /// One row of the registry.
 struct Codec {
-  std::string name;       ///< as in `--codec NAME`
-  std::string summary;    ///< one line
-  std::string reference;  ///< paper or section
-  std::string parameters; ///< lines "name = default   meaning", for `weft list codecs`
+  std::string name;        ///< as in `--codec NAME`
+  std::string summary;     ///< one line
+  std::string reference;   ///< paper or section
+  std::string parameters;  ///< lines "name = default   meaning", for `weft list codecs`
   /// Fits to a BTF. `parameters` is finished (unknown keys refused) by the codec. @throws Error
-  std::function<std::unique_ptr<Representation>(std::shared_ptr<const Btf>, const Settings& parameters, Progress&)> fit;
+  std::function<std::unique_ptr<Representation>(std::shared_ptr<const Btf>,
+                                                const Settings& parameters, Progress&)>
+      fit;
   /// Opens a folder that `save` wrote. @throws Error
   std::function<std::unique_ptr<Representation>(const std::filesystem::path&)> load;
 };
@@ -53,7 +55,8 @@ std::span<const Codec> codecs();
 /// @throws Error  listing the valid names, the nearest first.
 const Codec& codec_named(const std::string& name);
 
-/// Opens a dataset folder of any kind: `btf.json` (raw) or `codec.json` (its codec's name is in it).
+/// Opens a dataset folder of any kind: `btf.json` (raw) or `codec.json` (its codec's name is in
+/// it).
 /// @throws Error  naming the folder where it is neither.
 std::unique_ptr<Representation> open_representation(const std::filesystem::path& folder);
 

@@ -1,4 +1,5 @@
-// A picture in memory: rows from the top, channels interleaved, linear floats. No dependency on OpenImageIO.
+// A picture in memory: rows from the top, channels interleaved, linear floats. No dependency on
+// OpenImageIO.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Other people's pictures in and out, through OpenImageIO (no header of it is needed to call these).
+// Other people's pictures in and out, through OpenImageIO (no header of it is needed to call
+// these).
 #pragma once
 
 #include <filesystem>
@@ -7,17 +8,17 @@
 
 namespace weft {
 
-/// How 8- and 16-bit values are taken: as stored in 0..1 (`linear`), or decoded from sRGB (`colour`).
-/// Float and half files are linear either way.
+/// How 8- and 16-bit values are taken: as stored in 0..1 (`linear`), or decoded from sRGB
+/// (`colour`). Float and half files are linear either way.
 enum class Encoding { linear, colour };
 
 /// Reads the first image of any file that OpenImageIO knows.
 /// @throws Error  naming the file and why (missing, truncated, unknown format).
 Image read_image(const std::filesystem::path& path, Encoding encoding);
 
-/// Format by extension. `.exr` and `.hdr` hold linear floats; `.png`, `.jpg` and other 8-bit formats are sRGB-encoded
-/// with `Encoding::colour` and raw bytes (value * 255, rounded) with `Encoding::linear`.
-/// Written aside and renamed. @throws Error naming the file.
+/// Format by extension. `.exr` and `.hdr` hold linear floats; `.png`, `.jpg` and other 8-bit
+/// formats are sRGB-encoded with `Encoding::colour` and raw bytes (value * 255, rounded) with
+/// `Encoding::linear`. Written aside and renamed. @throws Error naming the file.
 void write_image(const std::filesystem::path& path, const Image& image, Encoding encoding);
 
 }  // namespace weft

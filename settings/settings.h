@@ -1,7 +1,9 @@
-// Settings that a person writes: a TOML file, or `--set KEY=VALUE` pairs, read with names, places and hints.
+// Settings that a person writes: a TOML file, or `--set KEY=VALUE` pairs, read with names, places
+// and hints.
 //
-// Each key that is asked for is marked; `finish()` then refuses what nobody asked for, naming its line
-// and the names that are valid there. A value of another type than asked for is an error with its line.
+// Each key that is asked for is marked; `finish()` then refuses what nobody asked for, naming its
+// line and the names that are valid there. A value of another type than asked for is an error with
+// its line.
 #pragma once
 
 #include <cstdint>
@@ -19,22 +21,25 @@ class Settings {
  public:
   /// No keys at all: every question is answered by its default.
   Settings();
-  /// @param overrides  "a.b.c=VALUE" pairs; VALUE is TOML, or a bare word that is taken as a string.
+  /// @param overrides  "a.b.c=VALUE" pairs; VALUE is TOML, or a bare word that is taken as a
+  /// string.
   ///                   `a.0.b` names element 0 of an array of tables.
   /// @throws Error     with file:line:column for a syntax error.
-  static Settings from_file(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+  static Settings from_file(const std::filesystem::path& path,
+                            const std::vector<std::string>& overrides = {});
   static Settings from_text(const std::string& text, const std::string& name,
                             const std::vector<std::string>& overrides = {});
 
   bool has(const std::string& key) const;
 
-  // Each answers the value of `key`, or `fallback` where it is absent. The forms without a fallback throw where
-  // the key is absent, naming it.
+  // Each answers the value of `key`, or `fallback` where it is absent. The forms without a fallback
+  // throw where the key is absent, naming it.
   double number(const std::string& key) const;
   double number(const std::string& key, double fallback) const;
   /// Also checks lower <= value <= upper. @throws Error with the range.
   double number(const std::string& key, double fallback, double lower, double upper) const;
-  std::int64_t integer(const std::string& key, std::int64_t fallback, std::int64_t lower, std::int64_t upper) const;
+  std::int64_t integer(const std::string& key, std::int64_t fallback, std::int64_t lower,
+                       std::int64_t upper) const;
   bool flag(const std::string& key, bool fallback) const;
   std::string text(const std::string& key) const;
   std::string text(const std::string& key, const std::string& fallback) const;
@@ -59,7 +64,8 @@ class Settings {
   /// "file:line:column" of a key, or of this table for an empty key.
   std::string where(const std::string& key = {}) const;
 
-  /// @throws Error  for the first key, here or in sub-tables, that nobody asked for: its line, and the names that
+  /// @throws Error  for the first key, here or in sub-tables, that nobody asked for: its line, and
+  /// the names that
   ///                were asked for there, the nearest one first.
   void finish() const;
 

@@ -1,7 +1,7 @@
 // The reflection of a point of a modelled surface: Lambert, GGX conductor, GGX plastic.
 //
-// All act in a local frame whose +z is the shading normal on the side of the viewer; materials are two-sided.
-// `alpha` is the GGX width itself, not a square or a root.
+// All act in a local frame whose +z is the shading normal on the side of the viewer; materials are
+// two-sided. `alpha` is the GGX width itself, not a square or a root.
 #pragma once
 
 #include <array>
@@ -37,7 +37,8 @@ class Bsdf {
     Rgb weight;     ///< f * cos / pdf
     float pdf = 0;  ///< per sr; 0: no sample, the path ends
   };
-  /// Draws a light direction for `view`. `u` in [0, 1)^3: a choice of lobe, and two for the direction.
+  /// Draws a light direction for `view`. `u` in [0, 1)^3: a choice of lobe, and two for the
+  /// direction.
   Sample sample(const Direction& view, const std::array<float, 3>& u) const;
   /// Density of `sample` at `light`, per sr.
   float pdf(const Direction& light, const Direction& view) const;
@@ -59,7 +60,8 @@ class Bsdf {
   Rgb fresnel(float cosine) const;
 };
 
-/// Reads `type = "lambert" | "conductor" | "plastic"` and its parameters (design page, "Text files").
+/// Reads `type = "lambert" | "conductor" | "plastic"` and its parameters (design page, "Text
+/// files").
 Bsdf read_bsdf(const Settings& settings);
 
 }  // namespace weft

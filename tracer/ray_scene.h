@@ -10,7 +10,8 @@
 
 namespace weft {
 
-/// Nearest hit of a ray. The hit point is (1-u-v) p0 + u p1 + v p2 of triangle `primitive` of mesh `mesh`.
+/// Nearest hit of a ray. The hit point is (1-u-v) p0 + u p1 + v p2 of triangle `primitive` of mesh
+/// `mesh`.
 struct RayHit {
   static constexpr std::uint32_t none = 0xFFFFFFFF;
   float distance = 0;
@@ -21,7 +22,8 @@ struct RayHit {
   bool hit() const { return mesh != none; }
 };
 
-/// Many rays as a structure of arrays, for calls that trace them together. `resize` allocates; reuse it.
+/// Many rays as a structure of arrays, for calls that trace them together. `resize` allocates;
+/// reuse it.
 struct RayStream {
   std::vector<float> ox, oy, oz, dx, dy, dz, tnear, tfar;
   // Written by `intersect`: distance is tfar.
@@ -30,13 +32,19 @@ struct RayStream {
   void resize(std::size_t n);
   std::size_t size() const { return ox.size(); }
   void set(std::size_t i, const Vec3& origin, const Vec3& direction, float near, float far) {
-    ox[i] = origin.x; oy[i] = origin.y; oz[i] = origin.z;
-    dx[i] = direction.x; dy[i] = direction.y; dz[i] = direction.z;
-    tnear[i] = near; tfar[i] = far;
+    ox[i] = origin.x;
+    oy[i] = origin.y;
+    oz[i] = origin.z;
+    dx[i] = direction.x;
+    dy[i] = direction.y;
+    dz[i] = direction.z;
+    tnear[i] = near;
+    tfar[i] = far;
   }
 };
 
-/// Whether the rays of a stream, in order, run side by side (primary and shadow rays to one light) or not.
+/// Whether the rays of a stream, in order, run side by side (primary and shadow rays to one light)
+/// or not.
 enum class Coherence { coherent, incoherent };
 
 class RayScene {
@@ -52,7 +60,8 @@ class RayScene {
   RayHit intersect(const Vec3& origin, const Vec3& direction, float near, float far) const;
   bool occluded(const Vec3& origin, const Vec3& direction, float near, float far) const;
 
-  /// The first `count` rays. Rays with tnear > tfar are left alone. A miss has mesh[i] == RayHit::none.
+  /// The first `count` rays. Rays with tnear > tfar are left alone. A miss has mesh[i] ==
+  /// RayHit::none.
   void intersect(RayStream& rays, std::size_t count, Coherence coherence) const;
   /// An occluded ray has tfar[i] < 0 afterwards.
   void occluded(RayStream& rays, std::size_t count, Coherence coherence) const;

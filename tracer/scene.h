@@ -1,4 +1,5 @@
-// A scene to render, as plain data: what the scene file says, with its meshes made and its BTFs opened.
+// A scene to render, as plain data: what the scene file says, with its meshes made and its BTFs
+// opened.
 #pragma once
 
 #include <memory>
@@ -33,7 +34,8 @@ struct DirectionalLight {
   Rgb irradiance;
 };
 
-/// Lat-long radiance: z up, row 0 the zenith, phi = pi - 2 pi (x+.5)/W, turned by `rotate` radians about +z.
+/// Lat-long radiance: z up, row 0 the zenith, phi = pi - 2 pi (x+.5)/W, turned by `rotate` radians
+/// about +z.
 struct EnvironmentLight {
   Image radiance;
   float rotate = 0;

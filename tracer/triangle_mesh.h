@@ -1,4 +1,5 @@
-// An indexed triangle mesh with a material a triangle: what mesostructures and scene shapes are made of.
+// An indexed triangle mesh with a material a triangle: what mesostructures and scene shapes are
+// made of.
 #pragma once
 
 #include <array>
@@ -12,12 +13,12 @@ namespace weft {
 
 struct TriangleMesh {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;    ///< one a vertex, unit; empty: shade with the triangles' own normals
+  std::vector<Vec3> normals;  ///< one a vertex, unit; empty: shade with the triangles' own normals
   std::vector<Vec2> texcoords;  ///< one a vertex, or empty
   /// One a vertex or empty: unit dP/du at the vertex; not orthogonal to the normal by itself.
   std::vector<Vec3> tangents;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside
-  std::vector<std::uint16_t> materials;                 ///< one a triangle, index into `material_names`
+  std::vector<std::uint16_t> materials;  ///< one a triangle, index into `material_names`
   std::vector<std::string> material_names;
 };
 

@@ -1,4 +1,5 @@
-// Random numbers as a hash of their coordinates: the same whatever the threads, the order or the shard.
+// Random numbers as a hash of their coordinates: the same whatever the threads, the order or the
+// shard.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,237 @@
+#include "btf/btf_file.h"
+
+#include <fmt/core.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "btf/atomic_file.h"
+#include "btf/error.h"
+#include "btf/sampling_json.h"
+#include "btf/view_file.h"
+
+namespace weft {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr int file_version = 1;
+constexpr float largest_half = 65504.0F;
+
+std::string pixel_type_name(PixelType type) {
+  return type == PixelType::half ? "half" : "float";
+}
+
+Json parse(const fs::path& path) {
+  try {
+    return Json::parse(read_text(path));
+  } catch (const Json::exception& error) {
+    throw bad_input(path.string(), std::string("is not JSON: ") + error.what());
+  }
+}
+
+// One sample that may not be stored, for the message.
+std::string sample_name(std::size_t index, std::size_t view, const BtfHeader& header) {
+  const std::size_t texel = index / 3;
+  const auto width = static_cast<std::size_t>(header.width);
+  const std::size_t texels = width * header.height;
+  return fmt::format("view {}, light {}, texel ({}, {})", view, texel / texels,
+                     texel % texels % width, texel % texels / width);
+}
+
+void check_values(std::size_t view, const BtfHeader& header, std::span<const float> values) {
+  std::size_t invalid = 0;
+  std::size_t first_invalid = 0;
+  std::size_t overflowing = 0;
+  std::size_t worst = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] >= 0) || std::isinf(values[i])) {
+      if (invalid++ == 0) first_invalid = i;
+    } else if (values[i] > largest_half) {
+      ++overflowing;
+      if (values[i] > values[worst] || overflowing == 1) worst = i;
+    }
+  }
+  if (invalid > 0) {
+    throw bad_input(sample_name(first_invalid, view, header),
+                    fmt::format("is {}, and {} values in all are not finite and >= 0",
+                                values[first_invalid], invalid));
+  }
+  if (overflowing > 0 && header.pixel_type == PixelType::half) {
+    throw bad_input(sample_name(worst, view, header),
+                    fmt::format("is {}, and {} values in all are above {}, the largest half",
+                                values[worst], overflowing, largest_half),
+                    "store floats: --pixel float");
+  }
+}
+
+}  // namespace
+
+std::string view_file_name(std::size_t view) {
+  return fmt::format("view_{:03}.exr", view);
+}
+
+BtfWriter::BtfWriter(fs::path folder, BtfHeader header)
+    : folder_(std::move(folder)), header_(std::move(header)) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) throw failed(folder_.string(), "cannot be created: " + error.message());
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("view_") || entry.path().extension() != ".exr") continue;
+    if (read_view_header(entry.path()).provenance != header_.provenance) {
+      throw bad_input(folder_.string(), "holds views of other settings (" + name + ")",
+                      "choose another folder, or remove this one");
+    }
+  }
+}
+
+fs::path BtfWriter::view_path(std::size_t view) const {
+  return folder_ / view_file_name(view);
+}
+
+bool BtfWriter::has_view(std::size_t view) const {
+  return fs::exists(view_path(view));
+}
+
+void BtfWriter::write_view(std::size_t view, std::span<const float> values,
+                           std::span<const float> standard_errors) {
+  check_values(view, header_, values);
+  const ViewFileHeader file{header_.width, header_.height, header_.pixel_type, header_.views[view],
+                            header_.provenance};
+  write_atomically(view_path(view), [&](const fs::path& path) {
+    write_view_file(path, file, header_.lights.directions(), values, standard_errors);
+  });
+}
+
+void BtfWriter::finish() {
+  Json files = Json::object();
+  Json noise = Json::array();
+  for (std::size_t v = 0; v < header_.views.size(); ++v) {
+    if (!has_view(v)) throw bad_input(folder_.string(), "has no " + view_file_name(v) + " yet");
+    const std::vector<float> errors = read_standard_errors(view_path(v));
+    if (!errors.empty()) noise.push_back(errors);
+    files[view_file_name(v)] = file_checksum(view_path(v));
+  }
+  Json json = {{"format", "weft-btf"},
+               {"version", file_version},
+               {"quantity", header_.quantity},
+               {"texels", {header_.width, header_.height}},
+               {"pixel", pixel_type_name(header_.pixel_type)},
+               {"tile_size", header_.tile_size},
+               {"views", sampling_to_json(header_.views)},
+               {"lights", sampling_to_json(header_.lights)},
+               {"provenance", Json::parse(header_.provenance)}};
+  if (noise.size() == header_.views.size()) {
+    json["noise"] = {{"standard_error_of_pair_means", noise}};
+  }
+  json["xxh3_128"] = files;
+  write_text_atomically(folder_ / "btf.json", json.dump(1) + "\n");
+}
+
+BtfHeader read_btf_header(const fs::path& folder) {
+  const fs::path path = folder / "btf.json";
+  if (!fs::is_directory(folder))
+    throw bad_input(folder.string(), "is not a BTF dataset (a folder)");
+  if (!fs::exists(path)) {
+    throw bad_input(path.string(), "is missing",
+                    "an unfinished acquisition has none: run it again to continue");
+  }
+  const Json json = parse(path);
+  const std::string where = path.string();
+  try {
+    if (json.value("format", "") != "weft-btf")
+      throw bad_input(where, "is not the description of a BTF");
+    if (const int version = json.at("version"); version != file_version) {
+      throw bad_input(where,
+                      fmt::format("has version {}; this program reads {}", version, file_version));
+    }
+    BtfHeader header{
+        .version = file_version,
+        .quantity = json.at("quantity"),
+        .width = json.at("texels").at(0),
+        .height = json.at("texels").at(1),
+        .views = sampling_from_json(json.at("views"), where + ", views"),
+        .lights = sampling_from_json(json.at("lights"), where + ", lights"),
+        .pixel_type = json.at("pixel") == "half" ? PixelType::half : PixelType::float32,
+        .tile_size = json.at("tile_size"),
+        .provenance = json.at("provenance").dump(),
+        .standard_errors = {},
+    };
+    if (json.contains("noise")) {
+      for (const auto& view : json.at("noise").at("standard_error_of_pair_means")) {
+        for (const auto& light : view) header.standard_errors.push_back(light);
+      }
+    }
+    if (header.width < 1 || header.height < 1)
+      throw bad_input(where, "texels must be at least 1 x 1");
+    return header;
+  } catch (const Json::exception& error) {
+    throw bad_input(where, std::string("cannot be understood: ") + error.what());
+  }
+}
+
+Btf read_btf(const fs::path& folder) {
+  const BtfHeader header = read_btf_header(folder);
+  Btf btf(header.width, header.height, header.views, header.lights, header.pixel_type);
+  btf.tile_size = header.tile_size;
+  btf.provenance = header.provenance;
+  // Views are independent, and no two write to the same values.
+  tbb::parallel_for(std::size_t{0}, header.views.size(), [&](std::size_t v) {
+    const std::vector<float> values = read_view_values(folder / view_file_name(v), header.width,
+                                                       header.height, header.lights.size());
+    std::size_t i = 0;
+    for (std::size_t l = 0; l < header.lights.size(); ++l) {
+      for (int y = 0; y < header.height; ++y) {
+        for (int x = 0; x < header.width; ++x, i += 3) {
+          btf.set(l, v, x, y, Rgb(values[i], values[i + 1], values[i + 2]));
+        }
+      }
+    }
+  });
+  return btf;
+}
+
+void write_btf(const fs::path& folder, const Btf& btf) {
+  BtfHeader header{.width = btf.width(),
+                   .height = btf.height(),
+                   .views = btf.views(),
+                   .lights = btf.lights(),
+                   .pixel_type = btf.pixel_type(),
+                   .tile_size = btf.tile_size,
+                   .provenance = btf.provenance,
+                   .standard_errors = {}};
+  BtfWriter writer(folder, std::move(header));
+  std::vector<float> values;
+  for (std::size_t v = 0; v < btf.views().size(); ++v) {
+    values.clear();
+    for (std::size_t l = 0; l < btf.lights().size(); ++l) {
+      for (int y = 0; y < btf.height(); ++y) {
+        for (int x = 0; x < btf.width(); ++x) {
+          const Rgb value = btf.at(l, v, x, y);
+          values.insert(values.end(), {value.x, value.y, value.z});
+        }
+      }
+    }
+    writer.write_view(v, values);
+  }
+  writer.finish();
+}
+
+std::vector<std::string> corrupted_files(const fs::path& folder) {
+  const Json json = parse(folder / "btf.json");
+  std::vector<std::string> corrupted;
+  for (const auto& [name, checksum] : json.at("xxh3_128").items()) {
+    if (!fs::exists(folder / name) || file_checksum(folder / name) != checksum)
+      corrupted.push_back(name);
+  }
+  return corrupted;
+}
+
+}  // namespace weft

@@ -1,0 +1,40 @@
+// One view of a dataset as a multi-part EXR: a part a light, RGB, angles as attributes.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "btf/btf.h"
+
+namespace weft {
+
+/// What is the same in all parts of a view's file.
+struct ViewFileHeader {
+  int width = 0;
+  int height = 0;
+  PixelType pixel_type = PixelType::half;
+  Direction view{0, 0, 1};
+  std::string provenance;  ///< of the run that wrote it
+};
+
+/// @param values           [light][y][x][rgb].
+/// @param standard_errors  of each light's tile mean, or empty.
+/// @throws Error  failed, where the file cannot be written whole.
+void write_view_file(const std::filesystem::path& path, const ViewFileHeader& header,
+                     std::span<const Direction> lights, std::span<const float> values,
+                     std::span<const float> standard_errors);
+
+/// @throws Error  naming the file: missing, truncated, not such a file.
+ViewFileHeader read_view_header(const std::filesystem::path& path);
+
+/// Standard errors of the lights' tile means; empty where the file has none.
+std::vector<float> read_standard_errors(const std::filesystem::path& path);
+
+/// [light][y][x][rgb]. @throws Error  where the file is truncated, or not of this size and number
+/// of lights.
+std::vector<float> read_view_values(const std::filesystem::path& path, int width, int height,
+                                    std::size_t lights);
+
+}  // namespace weft

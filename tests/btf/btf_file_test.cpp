@@ -1,0 +1,127 @@
+// Datasets on disk: round trips, resumption, and what is refused.
+#include "btf/btf_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "btf/atomic_file.h"
+#include "btf/error.h"
+#include "btf/random.h"
+#include "tests/temporary_folder.h"
+
+using namespace weft;
+
+namespace {
+
+Btf random_btf(PixelType type) {
+  Btf btf(3, 2, HemisphereSampling(named_directions("fibonacci:5")),
+          HemisphereSampling(named_directions("regular:2x4")), type);
+  for (std::size_t v = 0; v < 5; ++v) {
+    for (std::size_t l = 0; l < 8; ++l) {
+      for (int i = 0; i < 6; ++i) {
+        btf.set(l, v, i % 3, i / 3,
+                Rgb(unit_float(hash_coordinates(v, l, i)), static_cast<float>(i), 1e-3F));
+      }
+    }
+  }
+  btf.provenance = R"({"type":"test"})";
+  return btf;
+}
+
+BtfHeader header_of(const Btf& btf) {
+  return {.width = btf.width(),
+          .height = btf.height(),
+          .views = btf.views(),
+          .lights = btf.lights(),
+          .pixel_type = btf.pixel_type(),
+          .tile_size = 1,
+          .provenance = btf.provenance,
+          .standard_errors = {}};
+}
+
+}  // namespace
+
+TEST_CASE("a dataset comes back bit by bit") {
+  for (const PixelType type : {PixelType::half, PixelType::float32}) {
+    const TemporaryFolder folder;
+    const Btf written = random_btf(type);
+    write_btf(folder.path / "a.btf", written);
+    const Btf read = read_btf(folder.path / "a.btf");
+    CHECK(read.width() == 3);
+    CHECK(read.height() == 2);
+    CHECK(read.pixel_type() == type);
+    CHECK(read.provenance == written.provenance);
+    for (std::size_t i = 0; i < read.views().size(); ++i)
+      CHECK(read.views()[i] == written.views()[i]);
+    CHECK(std::equal(read.lights().triangles().begin(), read.lights().triangles().end(),
+                     written.lights().triangles().begin()));
+    CHECK(std::equal(read.halfs().begin(), read.halfs().end(), written.halfs().begin()));
+    CHECK(std::equal(read.floats().begin(), read.floats().end(), written.floats().begin()));
+    CHECK(corrupted_files(folder.path / "a.btf").empty());
+  }
+}
+
+TEST_CASE("writing twice gives the same bytes") {
+  const TemporaryFolder folder;
+  write_btf(folder.path / "a.btf", random_btf(PixelType::half));
+  write_btf(folder.path / "b.btf", random_btf(PixelType::half));
+  CHECK(file_checksum(folder.path / "a.btf/view_003.exr") ==
+        file_checksum(folder.path / "b.btf/view_003.exr"));
+  CHECK(read_text(folder.path / "a.btf/btf.json") == read_text(folder.path / "b.btf/btf.json"));
+}
+
+TEST_CASE("a writer continues where another stopped, and keeps the noise") {
+  const TemporaryFolder folder;
+  const Btf btf = random_btf(PixelType::half);
+  const std::vector<float> values(3 * 6 * 8, 0.25F);
+  const std::vector<float> errors(8, 0.125F);
+  BtfWriter first(folder.path / "a.btf", header_of(btf));
+  first.write_view(0, values, errors);
+  CHECK_THROWS_WITH(first.finish(), Catch::Contains("view_001.exr"));
+  CHECK_THROWS_AS(read_btf_header(folder.path / "a.btf"), Error);
+  BtfWriter second(folder.path / "a.btf", header_of(btf));
+  CHECK(second.has_view(0));
+  for (std::size_t v = 1; v < 5; ++v) {
+    CHECK_FALSE(second.has_view(v));
+    second.write_view(v, values, errors);
+  }
+  second.finish();
+  const BtfHeader header = read_btf_header(folder.path / "a.btf");
+  REQUIRE(header.standard_errors.size() == 40);
+  CHECK(header.standard_errors[17] == 0.125F);
+  BtfHeader other = header_of(btf);
+  other.provenance = R"({"type":"other"})";
+  CHECK_THROWS_WITH(BtfWriter(folder.path / "a.btf", other), Catch::Contains("other settings"));
+}
+
+TEST_CASE("values that may not be stored are refused with their place") {
+  const TemporaryFolder folder;
+  BtfWriter writer(folder.path / "a.btf", header_of(random_btf(PixelType::half)));
+  std::vector<float> values(3 * 6 * 8, 1.0F);
+  values[3 * (2 * 6 + 4) + 1] = 70000;  // light 2, texel (1, 1)
+  CHECK_THROWS_WITH(
+      writer.write_view(1, values),
+      Catch::Contains("view 1, light 2, texel (1, 1)") && Catch::Contains("--pixel float"));
+  values[3 * (2 * 6 + 4) + 1] = std::numeric_limits<float>::quiet_NaN();
+  CHECK_THROWS_WITH(writer.write_view(1, values), Catch::Contains("nan"));
+  values[3 * (2 * 6 + 4) + 1] = -1;
+  CHECK_THROWS_AS(writer.write_view(1, values), Error);
+  CHECK_FALSE(writer.has_view(1));
+  CHECK(std::filesystem::is_empty(folder.path / "a.btf"));
+}
+
+TEST_CASE("damaged datasets are named") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "a.btf";
+  write_btf(path, random_btf(PixelType::half));
+  std::filesystem::resize_file(path / "view_002.exr", 2000);
+  CHECK(corrupted_files(path) == std::vector<std::string>{"view_002.exr"});
+  CHECK_THROWS_WITH(read_btf(path), Catch::Contains("view_002.exr"));
+  std::filesystem::remove(path / "view_002.exr");
+  CHECK_THROWS_WITH(read_btf(path), Catch::Contains("view_002.exr") && Catch::Contains("missing"));
+  std::ofstream(path / "btf.json") << "{\"format\": \"weft-btf\", \"version\": 1";
+  CHECK_THROWS_WITH(read_btf(path), Catch::Contains("btf.json") && Catch::Contains("not JSON"));
+  CHECK_THROWS_WITH(read_btf(folder.path), Catch::Contains("btf.json"));
+  CHECK_THROWS_WITH(read_btf(folder.path / "none"), Catch::Contains("not a BTF dataset"));
+}
