@@ -1,7 +1,9 @@
 // Rules that hold for every file of the repository: it says what it is, it is small, it names no
 // machine.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cctype>
 #include <string_view>
 
 #include "tests/structure/source_files.h"
@@ -17,11 +19,18 @@ std::string_view comment_of(const SourceFile& file) {
   return "";
 }
 
+bool has_own_header(const SourceFile& file) {
+  if (!file.path.ends_with(".cpp")) return false;
+  const std::string header = file.path.substr(0, file.path.size() - 3) + "h";
+  return std::ranges::find(source_files(), header, &SourceFile::path) != source_files().end();
+}
+
 }  // namespace
 
 TEST_CASE("Every source opens with a comment that says its job") {
   for (const SourceFile& file : source_files()) {
     const std::string_view comment = comment_of(file);
+    if (has_own_header(file)) continue;  // which says it for both
     if (comment.empty()) continue;
     INFO(file.path);
     REQUIRE(!file.lines.empty());
