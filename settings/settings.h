@@ -51,11 +51,14 @@ class Settings {
   Vec3 vec3(const std::string& key, const Vec3& fallback) const;
   /// A colour: three numbers, or one for all three; each >= 0.
   Rgb rgb(const std::string& key, const Rgb& fallback) const;
-  /// A path, relative to the file it stands in.
+  /// A path, relative to the file it stands in; one from an override, to the working folder.
   std::filesystem::path path(const std::string& key) const;
 
   /// A sub-table; empty settings where absent. Its `finish()` is called by this one's.
   Settings table(const std::string& key) const;
+  /// The same, where keys that are absent are filled in from `defaults`, a TOML text; a table that names its own
+  /// `type` takes none of them.
+  Settings table(const std::string& key, const std::string& defaults) const;
   /// An array of tables (or of inline tables); empty where absent.
   std::vector<Settings> tables(const std::string& key) const;
   /// Names of the keys of this table, sorted.
@@ -66,10 +69,12 @@ class Settings {
 
   /// @throws Error  for the first key, here or in sub-tables, that nobody asked for: its line, and
   /// the names that
-  ///                were asked for there, the nearest one first.
+  ///                were asked for there, and the nearest one. Where an override changed a table's `type`, what the
+  ///                file says for the type that it had is left aside instead.
   void finish() const;
 
-  /// All keys and values as canonical JSON text (sorted keys), sub-tables included.
+  /// All keys and values as canonical JSON text (sorted keys, shortest numbers), sub-tables included. Of paths only
+  /// the file name, so that it does not depend on where things lie.
   std::string canonical_json() const;
 
  private:
