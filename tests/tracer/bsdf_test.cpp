@@ -1,0 +1,125 @@
+// Energy, reciprocity and sampling of the modelled materials.
+#include "tracer/bsdf.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "btf/error.h"
+#include "tracer/sobol.h"
+
+using namespace weft;
+
+namespace {
+
+Direction tilted(float degrees_from_normal) {
+  return from_spherical(radians(degrees_from_normal), 0.7F);
+}
+
+// Mean of the weights of samples: the directional albedo.
+Imath::V3d sampled_albedo(const Bsdf& bsdf, const Direction& view, std::uint32_t samples) {
+  Imath::V3d sum(0, 0, 0);
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    const auto [u, v] = sobol_point(s, 11);
+    const auto [lobe, unused] = sobol_point(s, 12);
+    const Bsdf::Sample sample = bsdf.sample(view, {lobe, u, v});
+    if (sample.pdf > 0) sum += Imath::V3d(sample.weight);
+  }
+  return sum / samples;
+}
+
+// The same by a product grid over the hemisphere, with no sampling of ours.
+double integrated_albedo(const Bsdf& bsdf, const Direction& view, int n) {
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const float z = (static_cast<float>(i) + 0.5F) / static_cast<float>(n);
+    for (int j = 0; j < n; ++j) {
+      const double phi = 2 * std::numbers::pi * (j + 0.5) / n;
+      sum += bsdf.evaluate(from_spherical(std::acos(z), phi), view).x;
+    }
+  }
+  return sum * 2 * std::numbers::pi / (static_cast<double>(n) * n);
+}
+
+}  // namespace
+
+TEST_CASE("white materials send back all light, at any roughness and angle") {
+  for (const float alpha : {0.001F, 0.05F, 0.3F, 0.7F, 1.0F}) {
+    for (const float angle : {0.0F, 30.0F, 60.0F, 80.0F, 88.0F}) {
+      INFO("alpha " << alpha << ", theta " << angle);
+      const Direction view = tilted(angle);
+      CHECK(sampled_albedo(Bsdf::conductor_f0(Rgb(1), alpha), view, 1 << 15).x ==
+            Approx(1).margin(0.01));
+      CHECK(sampled_albedo(Bsdf::plastic(Rgb(1), 1.5F, alpha), view, 1 << 15).x ==
+            Approx(1).margin(0.01));
+    }
+  }
+  CHECK(sampled_albedo(Bsdf::lambert(Rgb(1)), tilted(70), 1024).x == Approx(1));
+}
+
+TEST_CASE("no material sends back more than it gets") {
+  for (const float angle : {0.0F, 45.0F, 85.0F}) {
+    const Imath::V3d gold = sampled_albedo(
+        Bsdf::conductor({0.18F, 0.55F, 1.34F}, {3.4F, 2.2F, 1.88F}, 0.3F), tilted(angle), 4096);
+    CHECK(gold.x < 1.0);
+    CHECK(gold.x > gold.z);  // gold is yellow
+    CHECK(sampled_albedo(Bsdf::plastic({0.5F, 0.2F, 0.1F}, 1.5F, 0.1F), tilted(angle), 4096).x <
+          1.0);
+  }
+}
+
+TEST_CASE("a smooth conductor reflects as Fresnel says at normal incidence") {
+  const float eta = 0.2F;
+  const float k = 3.0F;
+  const double expected = ((eta - 1.0) * (eta - 1) + k * k) / ((eta + 1.0) * (eta + 1) + k * k);
+  CHECK(sampled_albedo(Bsdf::conductor(Rgb(eta), Rgb(k), 0.01F), {0, 0, 1}, 4096).x ==
+        Approx(expected).epsilon(0.01));
+}
+
+TEST_CASE("sampling and evaluation agree with a plain integral") {
+  for (const Bsdf& bsdf : {Bsdf::conductor({0.2F, 0.2F, 0.2F}, {3, 3, 3}, 0.4F),
+                           Bsdf::plastic(Rgb(0.3F), 1.5F, 0.3F), Bsdf::lambert(Rgb(0.6F))}) {
+    for (const float angle : {10.0F, 55.0F, 75.0F}) {
+      CHECK(sampled_albedo(bsdf, tilted(angle), 1 << 15).x ==
+            Approx(integrated_albedo(bsdf, tilted(angle), 512)).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("densities integrate to the chance of a direction above the horizon") {
+  for (const Bsdf& bsdf :
+       {Bsdf::conductor_f0(Rgb(0.9F), 0.3F), Bsdf::plastic(Rgb(0.3F), 1.5F, 0.4F)}) {
+    const Direction view = tilted(40);
+    double sum = 0;
+    constexpr int n = 512;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        sum += bsdf.pdf(
+            from_spherical(std::acos((i + 0.5) / n), 2 * std::numbers::pi * (j + 0.5) / n), view);
+      }
+    }
+    int above = 0;
+    for (std::uint32_t s = 0; s < 8192; ++s) {
+      const auto [u, v] = sobol_point(s, 3);
+      above += bsdf.sample(view, {sobol_point(s, 4)[0], u, v}).pdf > 0 ? 1 : 0;
+    }
+    CHECK(sum * 2 * std::numbers::pi / (n * n) == Approx(above / 8192.0).margin(0.01));
+  }
+}
+
+TEST_CASE("materials are reciprocal") {
+  const Direction a = from_spherical(0.4, 0.3);
+  const Direction b = from_spherical(1.1, 2.0);
+  for (const Bsdf& bsdf : {Bsdf::conductor({0.2F, 0.9F, 1.1F}, {3, 2, 2}, 0.4F),
+                           Bsdf::plastic(Rgb(0.3F), 1.5F, 0.3F)}) {
+    CHECK(bsdf.evaluate(a, b).y / a.z == Approx(bsdf.evaluate(b, a).y / b.z).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("nothing comes from or goes below the horizon") {
+  const Bsdf bsdf = Bsdf::plastic(Rgb(0.5F), 1.5F, 0.2F);
+  CHECK(bsdf.evaluate({1, 0, 0}, {0, 0, 1}) == Rgb(0, 0, 0));
+  CHECK(bsdf.evaluate({0, 0, 1}, {0, 0, -1}) == Rgb(0, 0, 0));
+  CHECK(bsdf.sample({1, 0, 0}, {0.5F, 0.5F, 0.5F}).pdf == 0);
+}

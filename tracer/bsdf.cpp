@@ -1,0 +1,218 @@
+#include "tracer/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "tracer/frame.h"
+#include "tracer/ggx.h"
+#include "tracer/sobol.h"
+
+namespace weft {
+
+namespace {
+
+constexpr float inverse_pi = std::numbers::inv_pi_v<float>;
+constexpr int table_size = 64;
+constexpr int table_samples = 2048;
+constexpr int fresnel_samples = 256;
+
+float fresnel_dielectric(float cosine, float ior) {
+  const float sine2 = (1 - cosine * cosine) / (ior * ior);
+  if (sine2 >= 1) return 1;
+  const float t = std::sqrt(1 - sine2);
+  const float s = (cosine - ior * t) / (cosine + ior * t);
+  const float p = (t - ior * cosine) / (t + ior * cosine);
+  return 0.5F * (s * s + p * p);
+}
+
+// Exact, unpolarised, from vacuum onto eta + i k.
+float fresnel_conductor(float cosine, float eta, float k) {
+  const float c2 = cosine * cosine;
+  const float s2 = 1 - c2;
+  const float t0 = eta * eta - k * k - s2;
+  const float a2b2 = std::sqrt(t0 * t0 + 4 * eta * eta * k * k);
+  const float t1 = a2b2 + c2;
+  const float a = std::sqrt(std::max(0.0F, 0.5F * (a2b2 + t0)));
+  const float t2 = 2 * cosine * a;
+  const float s = (t1 - t2) / (t1 + t2);
+  const float t3 = c2 * a2b2 + s2 * s2;
+  const float t4 = t2 * s2;
+  return 0.5F * (s + s * (t3 - t4) / (t3 + t4));
+}
+
+}  // namespace
+
+// Nodes are even in the square root of the cosine: the albedo bends most at grazing angles.
+struct Bsdf::AlbedoTable {
+  std::array<float, table_size> albedo{};
+  float average = 0;
+
+  float at(float cosine) const {
+    const float position = std::sqrt(std::clamp(cosine, 0.0F, 1.0F)) * (table_size - 1);
+    const int i = std::min(static_cast<int>(position), table_size - 2);
+    const float t = position - static_cast<float>(i);
+    return albedo[i] * (1 - t) + albedo[i + 1] * t;
+  }
+
+  /// @param fresnel  reflectance of a facet at a cosine.
+  template <typename Fresnel>
+  AlbedoTable(float alpha, const Fresnel& fresnel) {
+    for (int i = 0; i < table_size; ++i) {
+      const float root = std::max(static_cast<float>(i) / (table_size - 1), 1e-3F);
+      const float cosine = root * root;
+      const Direction view(std::sqrt(std::max(0.0F, 1 - cosine * cosine)), 0, cosine);
+      double sum = 0;
+      for (std::uint32_t s = 0; s < table_samples; ++s) {
+        const auto [u, v] = sobol_point(s, 0);
+        const Vec3 half_vector = ggx::sample_visible_normal(view, alpha, u, v);
+        const float across = view ^ half_vector;
+        const Direction light = half_vector * (2 * across) - view;
+        if (light.z <= 0 || across <= 0) continue;
+        sum += fresnel(across) * ggx::masking_shadowing(light, view, alpha) /
+               ggx::masking(view, alpha);
+      }
+      albedo[i] = static_cast<float>(sum / table_samples);
+    }
+    // 2 * integral of albedo(c) c dc
+    constexpr int steps = 1024;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+      const float cosine = (static_cast<float>(i) + 0.5F) / steps;
+      sum += 2.0 * at(cosine) * cosine / steps;
+    }
+    average = static_cast<float>(sum);
+  }
+};
+
+Bsdf Bsdf::lambert(const Rgb& albedo) {
+  Bsdf bsdf;
+  bsdf.albedo_ = albedo;
+  return bsdf;
+}
+
+namespace {
+
+// Part of the light that leaves after more than one reflection between facets, by colour: Kulla and
+// Conty, "Revisiting physically based shading at Imageworks", 2017.
+Rgb multiple_reflections(const std::function<Rgb(float)>& fresnel, float average_albedo) {
+  Imath::V3d average(0, 0, 0);
+  for (int i = 0; i < fresnel_samples; ++i) {
+    const float cosine = (static_cast<float>(i) + 0.5F) / fresnel_samples;
+    const Rgb f = fresnel(cosine);
+    average += Imath::V3d(f.x, f.y, f.z) * (2.0 * cosine / fresnel_samples);
+  }
+  const auto term = [&](double f) {
+    return static_cast<float>(f * f * average_albedo / (1 - f * (1 - average_albedo)));
+  };
+  return {term(average.x), term(average.y), term(average.z)};
+}
+
+}  // namespace
+
+Bsdf Bsdf::conductor(const Rgb& eta, const Rgb& k, float alpha) {
+  Bsdf bsdf;
+  bsdf.kind_ = Kind::conductor;
+  bsdf.eta_ = eta;
+  bsdf.k_ = k;
+  bsdf.alpha_ = alpha;
+  bsdf.table_ = std::make_shared<const AlbedoTable>(alpha, [](float) { return 1.0F; });
+  bsdf.multiple_scattering_ =
+      multiple_reflections([&](float c) { return bsdf.fresnel(c); }, bsdf.table_->average);
+  return bsdf;
+}
+
+Bsdf Bsdf::conductor_f0(const Rgb& f0, float alpha) {
+  Bsdf bsdf;
+  bsdf.kind_ = Kind::conductor;
+  bsdf.f0_ = f0;
+  bsdf.schlick_ = true;
+  bsdf.alpha_ = alpha;
+  bsdf.table_ = std::make_shared<const AlbedoTable>(alpha, [](float) { return 1.0F; });
+  bsdf.multiple_scattering_ =
+      multiple_reflections([&](float c) { return bsdf.fresnel(c); }, bsdf.table_->average);
+  return bsdf;
+}
+
+Bsdf Bsdf::plastic(const Rgb& albedo, float ior, float alpha) {
+  Bsdf bsdf;
+  bsdf.kind_ = Kind::plastic;
+  bsdf.albedo_ = albedo;
+  bsdf.ior_ = ior;
+  bsdf.alpha_ = alpha;
+  bsdf.table_ = std::make_shared<const AlbedoTable>(
+      alpha, [ior](float c) { return fresnel_dielectric(c, ior); });
+  return bsdf;
+}
+
+Rgb Bsdf::fresnel(float cosine) const {
+  if (kind_ == Kind::plastic) return Rgb(fresnel_dielectric(cosine, ior_));
+  if (schlick_) {
+    const float m = 1 - cosine;
+    const float m5 = m * m * m * m * m;
+    return f0_ + (Rgb(1, 1, 1) - f0_) * m5;
+  }
+  return {fresnel_conductor(cosine, eta_.x, k_.x), fresnel_conductor(cosine, eta_.y, k_.y),
+          fresnel_conductor(cosine, eta_.z, k_.z)};
+}
+
+Rgb Bsdf::evaluate(const Direction& light, const Direction& view) const {
+  if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
+  if (kind_ == Kind::lambert) return albedo_ * (inverse_pi * light.z);
+  const Vec3 half_vector = (light + view).normalized();
+  const float specular = ggx::density(half_vector, alpha_) *
+                         ggx::masking_shadowing(light, view, alpha_) / (4 * view.z);
+  const Rgb single = fresnel(std::min(1.0F, light ^ half_vector)) * specular;
+  // What the specular lobe keeps back in either direction; 1 - average is 0 only where nothing is
+  // lost.
+  const float lost = (1 - table_->at(light.z)) * (1 - table_->at(view.z)) * inverse_pi * light.z /
+                     std::max(1 - table_->average, 1e-6F);
+  return single + (kind_ == Kind::conductor ? multiple_scattering_ : albedo_) * lost;
+}
+
+namespace {
+
+// Chance of the specular lobe, given its albedo towards the viewer and the colour of the diffuse
+// one.
+float specular_chance(float specular, float diffuse_colour) {
+  const float diffuse = (1 - specular) * diffuse_colour;
+  const float total = specular + diffuse;
+  return total > 0 ? std::clamp(specular / total, 0.05F, 0.95F) : 1;
+}
+
+}  // namespace
+
+float Bsdf::pdf(const Direction& light, const Direction& view) const {
+  if (!(light.z > 0) || !(view.z > 0)) return 0;
+  const float diffuse = light.z * inverse_pi;
+  if (kind_ == Kind::lambert) return diffuse;
+  const Vec3 half_vector = (light + view).normalized();
+  const float specular =
+      ggx::density(half_vector, alpha_) * ggx::masking(view, alpha_) / (4 * view.z);
+  const float chance = specular_chance(
+      table_->at(view.z), max_component(kind_ == Kind::conductor ? multiple_scattering_ : albedo_));
+  return chance * specular + (1 - chance) * diffuse;
+}
+
+Bsdf::Sample Bsdf::sample(const Direction& view, const std::array<float, 3>& u) const {
+  if (!(view.z > 0)) return {};
+  if (kind_ == Kind::lambert) {
+    const Direction light = cosine_direction(u[1], u[2]);
+    return {light, albedo_, light.z * inverse_pi};
+  }
+  const float chance = specular_chance(
+      table_->at(view.z), max_component(kind_ == Kind::conductor ? multiple_scattering_ : albedo_));
+  Direction light;
+  if (u[0] < chance) {
+    const Vec3 half_vector = ggx::sample_visible_normal(view, alpha_, u[1], u[2]);
+    light = (half_vector * (2 * (view ^ half_vector)) - view).normalized();
+  } else {
+    light = cosine_direction(u[1], u[2]);
+  }
+  const float density = pdf(light, view);
+  if (!(density > 0)) return {};
+  return {light, evaluate(light, view) / density, density};
+}
+
+}  // namespace weft

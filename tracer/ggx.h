@@ -1,0 +1,56 @@
+// The GGX distribution of microfacet normals, isotropic, with height-correlated Smith masking.
+//
+// Walter et al. 2007 (distribution), Heitz 2014 (correlated masking, eq. 99), Heitz 2018 (visible
+// normals). `alpha` is the width itself. Directions are unit vectors with z > 0 in the surface's
+// frame.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "btf/direction.h"
+
+namespace weft::ggx {
+
+/// Density of normals per sr. sin^2 is taken from x and y, which keep their digits for a
+/// mirror-like alpha.
+inline float density(const Vec3& normal, float alpha) {
+  const float a2 = alpha * alpha;
+  const float sine2 = normal.x * normal.x + normal.y * normal.y;
+  const float t = sine2 + a2 * normal.z * normal.z;
+  return t > 0 ? a2 / (std::numbers::pi_v<float> * t * t) : 0;
+}
+
+inline float lambda(const Direction& d, float alpha) {
+  const float tangent2 = (d.x * d.x + d.y * d.y) / (d.z * d.z);
+  return 0.5F * (std::sqrt(1 + alpha * alpha * tangent2) - 1);
+}
+
+/// Share of facets that `d` sees.
+inline float masking(const Direction& d, float alpha) {
+  return 1 / (1 + lambda(d, alpha));
+}
+
+/// Share of facets that both see.
+inline float masking_shadowing(const Direction& light, const Direction& view, float alpha) {
+  return 1 / (1 + lambda(light, alpha) + lambda(view, alpha));
+}
+
+/// A normal with the density of those that `view` sees; u, v in [0, 1).
+inline Vec3 sample_visible_normal(const Direction& view, float alpha, float u, float v) {
+  const Vec3 stretched = Vec3(alpha * view.x, alpha * view.y, view.z).normalized();
+  const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
+  const Vec3 t1 =
+      length2 > 0 ? Vec3(-stretched.y, stretched.x, 0) / std::sqrt(length2) : Vec3(1, 0, 0);
+  const Vec3 t2 = stretched % t1;
+  const float r = std::sqrt(u);
+  const float phi = 2 * std::numbers::pi_v<float> * v;
+  const float p1 = r * std::cos(phi);
+  const float s = 0.5F * (1 + stretched.z);
+  const float p2 = (1 - s) * std::sqrt(std::max(0.0F, 1 - p1 * p1)) + s * r * std::sin(phi);
+  const Vec3 n = t1 * p1 + t2 * p2 + stretched * std::sqrt(std::max(0.0F, 1 - p1 * p1 - p2 * p2));
+  return Vec3(alpha * n.x, alpha * n.y, std::max(1e-6F, n.z)).normalized();
+}
+
+}  // namespace weft::ggx

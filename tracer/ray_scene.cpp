@@ -1,0 +1,180 @@
+#include "tracer/ray_scene.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "btf/error.h"
+
+namespace weft {
+
+namespace {
+
+// Embree gives the pieces of a stream by pointer.
+RTCRayNp rays_of(RayStream& s) {
+  return {.org_x = s.ox.data(),
+          .org_y = s.oy.data(),
+          .org_z = s.oz.data(),
+          .tnear = s.tnear.data(),
+          .dir_x = s.dx.data(),
+          .dir_y = s.dy.data(),
+          .dir_z = s.dz.data(),
+          .time = s.time.data(),
+          .tfar = s.tfar.data(),
+          .mask = s.mask.data(),
+          .id = s.id.data(),
+          .flags = s.flags.data()};
+}
+
+RTCIntersectContext context_for(Coherence coherence) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                   : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+
+void check_finite(const TriangleMesh& mesh, std::size_t index) {
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Vec3& p = mesh.positions[i];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      throw bad_input(fmt::format("mesh {}", index), fmt::format("position {} is not finite", i));
+    }
+  }
+}
+
+}  // namespace
+
+void RayStream::resize(std::size_t n) {
+  for (std::vector<float>* floats :
+       {&ox, &oy, &oz, &dx, &dy, &dz, &tnear, &tfar, &u, &v, &ngx, &ngy, &ngz, &time}) {
+    floats->resize(n, 0.0F);
+  }
+  for (std::vector<std::uint32_t>* words : {&primitive, &mesh, &instance, &id, &flags}) {
+    words->resize(n, 0);
+  }
+  mask.resize(n, 0xFFFFFFFF);
+}
+
+// Embree's objects are counted by Embree; this releases ours.
+struct RayScene::Device {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  ~Device() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  void add(const TriangleMesh& mesh) const {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                RTC_FORMAT_FLOAT3, sizeof(Vec3),
+                                                                mesh.positions.size()));
+    auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size()));
+    if (vertices == nullptr || indices == nullptr) {
+      rtcReleaseGeometry(geometry);
+      throw failed("Embree", "no memory for the mesh");
+    }
+    std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
+    std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+};
+
+RayScene::RayScene(std::span<const TriangleMesh* const> meshes)
+    : device_(std::make_unique<Device>()) {
+  device_->device = rtcNewDevice(nullptr);
+  if (device_->device == nullptr) throw failed("Embree", "no device could be made");
+  device_->scene = rtcNewScene(device_->device);
+  // Watertight at edges: a closed surface lets no ray through.
+  rtcSetSceneFlags(device_->scene, RTC_SCENE_FLAG_ROBUST);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    check_finite(*meshes[i], i);
+    device_->add(*meshes[i]);
+  }
+  rtcCommitScene(device_->scene);
+  if (rtcGetDeviceError(device_->device) != RTC_ERROR_NONE) {
+    throw failed("Embree", "the acceleration structure could not be built",
+                 "is there enough memory?");
+  }
+}
+
+RayScene::RayScene(const TriangleMesh& mesh)
+    : RayScene(std::span<const TriangleMesh* const>(std::array<const TriangleMesh*, 1>{&mesh})) {}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+RayHit RayScene::intersect(const Vec3& origin, const Vec3& direction, float near, float far) const {
+  RTCIntersectContext context = context_for(Coherence::incoherent);
+  RTCRayHit query{};
+  query.ray = {.org_x = origin.x,
+               .org_y = origin.y,
+               .org_z = origin.z,
+               .tnear = near,
+               .dir_x = direction.x,
+               .dir_y = direction.y,
+               .dir_z = direction.z,
+               .time = 0,
+               .tfar = far,
+               .mask = 0xFFFFFFFF,
+               .id = 0,
+               .flags = 0};
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(device_->scene, &context, &query);
+  return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.geomID, query.hit.primID};
+}
+
+bool RayScene::occluded(const Vec3& origin, const Vec3& direction, float near, float far) const {
+  RTCIntersectContext context = context_for(Coherence::incoherent);
+  RTCRay ray{.org_x = origin.x,
+             .org_y = origin.y,
+             .org_z = origin.z,
+             .tnear = near,
+             .dir_x = direction.x,
+             .dir_y = direction.y,
+             .dir_z = direction.z,
+             .time = 0,
+             .tfar = far,
+             .mask = 0xFFFFFFFF,
+             .id = 0,
+             .flags = 0};
+  rtcOccluded1(device_->scene, &context, &ray);
+  return ray.tfar < 0;
+}
+
+void RayScene::intersect(RayStream& rays, std::size_t count, Coherence coherence) const {
+  RTCIntersectContext context = context_for(coherence);
+  std::fill_n(rays.mesh.begin(), count, RTC_INVALID_GEOMETRY_ID);
+  RTCRayHitNp query{.ray = rays_of(rays),
+                    .hit = {.Ng_x = rays.ngx.data(),
+                            .Ng_y = rays.ngy.data(),
+                            .Ng_z = rays.ngz.data(),
+                            .u = rays.u.data(),
+                            .v = rays.v.data(),
+                            .primID = rays.primitive.data(),
+                            .geomID = rays.mesh.data(),
+                            .instID = {rays.instance.data()}}};
+  rtcIntersectNp(device_->scene, &context, &query, static_cast<unsigned>(count));
+}
+
+void RayScene::occluded(RayStream& rays, std::size_t count, Coherence coherence) const {
+  RTCIntersectContext context = context_for(coherence);
+  RTCRayNp query = rays_of(rays);
+  rtcOccludedNp(device_->scene, &context, &query, static_cast<unsigned>(count));
+}
+
+}  // namespace weft

@@ -1,0 +1,55 @@
+// Owen-scrambled Sobol points in two dimensions, each pair of dimensions shuffled and scrambled by
+// a hash.
+//
+// Burley, "Practical hash-based Owen scrambling", JCGT 9(4), 2020, with Vegdahl's constants for the
+// hash.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "btf/random.h"
+
+namespace weft {
+
+constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+  x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
+  x = ((x >> 2) & 0x33333333U) | ((x & 0x33333333U) << 2);
+  x = ((x >> 4) & 0x0F0F0F0FU) | ((x & 0x0F0F0F0FU) << 4);
+  return __builtin_bswap32(x);
+}
+
+/// A random permutation of [0, 1) in base 2: keeps every elementary interval.
+constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+  x = reverse_bits(x);
+  x ^= x * 0x3D20ADEAU;
+  x += seed;
+  x *= (seed >> 16) | 1U;
+  x ^= x * 0x05526C56U;
+  x ^= x * 0x53A22864U;
+  return reverse_bits(x);
+}
+
+/// Second dimension of Sobol's sequence (the first is `reverse_bits`).
+constexpr std::uint32_t sobol_second(std::uint32_t index) {
+  std::uint32_t x = 0;
+  for (std::uint32_t v = 1U << 31; index != 0; index >>= 1, v ^= v >> 1) {
+    if ((index & 1U) != 0) x ^= v;
+  }
+  return x;
+}
+
+/// Point `index` of the (0, 2)-sequence that `key` (a hash of all other coordinates) names; each in
+/// [0, 1).
+constexpr std::array<float, 2> sobol_point(std::uint32_t index, std::uint64_t key) {
+  const auto low = static_cast<std::uint32_t>(key);
+  const auto high = static_cast<std::uint32_t>(key >> 32);
+  const std::uint32_t shuffled = owen_scramble(index, low);
+  const std::uint32_t x = owen_scramble(reverse_bits(shuffled), high);
+  const std::uint32_t y =
+      owen_scramble(sobol_second(shuffled), static_cast<std::uint32_t>(mix_bits(key)));
+  return {static_cast<float>(x >> 8) * (1.0F / 16777216.0F),
+          static_cast<float>(y >> 8) * (1.0F / 16777216.0F)};
+}
+
+}  // namespace weft
