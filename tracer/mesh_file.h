@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "tracer/polygon_mesh.h"
 #include "tracer/triangle_mesh.h"
 
 namespace weft {
@@ -14,6 +15,9 @@ namespace weft {
 /// index out of
 ///                range, a position that is not finite.
 TriangleMesh read_mesh(const std::filesystem::path& path);
+
+/// The same with its polygons left whole, for subdivision.
+PolygonMesh read_polygons(const std::filesystem::path& path);
 
 /// The names of `path`'s extension that `read_mesh` knows: "obj", "ply".
 bool is_mesh_file(const std::filesystem::path& path);
