@@ -1,9 +1,112 @@
-// weft compare: not here yet.
+// weft compare REF TEST: how far one picture is from another, in numbers and as a map.
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
 
 #include "cli/command.h"
+#include "images/image_file.h"
+#include "study/colour_map.h"
+#include "study/metrics.h"
 
 namespace weft::cli {
 
-void add_compare(CLI::App& /*app*/, Session& /*session*/) {}
+namespace {
+
+struct Options {
+  std::string reference;
+  std::string test;
+  std::string map;
+  double map_top = 0;
+  double max_rmse = std::numeric_limits<double>::infinity();
+};
+
+const char* channel_name(const ImageDifference& d, int channels) {
+  static constexpr const char* names[] = {"red", "green", "blue"};
+  return channels < 3 ? "grey" : names[d.largest_channel];
+}
+
+void report(const ImageDifference& d, const char* channel, Session& session) {
+  // JSON has no infinity: null stands for the PSNR of equal pictures.
+  session.measured["rmse"] = d.rmse;
+  session.measured["relative_rmse"] = d.relative_rmse;
+  session.measured["mae"] = d.mae;
+  session.measured["psnr"] = d.psnr;
+  session.measured["peak"] = d.peak;
+  session.measured["ssim"] = d.ssim;
+  session.measured["largest"] = {
+      {"error", d.largest}, {"x", d.largest_x}, {"y", d.largest_y}, {"channel", channel}};
+  session.say(fmt::format("RMSE           {:.6g}   ({:.4g} % of the reference's mean)", d.rmse,
+                          100 * d.relative_rmse));
+  session.say(fmt::format("MAE            {:.6g}", d.mae));
+  session.say(
+      std::isinf(d.psnr) && d.psnr > 0
+          ? std::string("PSNR           infinite: the pictures are equal")
+          : fmt::format("PSNR           {:.2f} dB   (peak {:.6g}, the largest reference value)",
+                        d.psnr, d.peak));
+  session.say(fmt::format("SSIM           {:.6f}", d.ssim));
+  session.say(fmt::format("largest error  {:.6g}   at x {}, y {}, {}", d.largest, d.largest_x,
+                          d.largest_y, channel));
+}
+
+void write_map(const Options& options, const Image& reference, const Image& test,
+               Session& session) {
+  const Image errors = error_per_pixel(reference, test, options.reference, options.test);
+  const double top = options.map_top > 0 ? options.map_top : scale_top(errors);
+  write_image(options.map, draw_colour_map(errors, top, "abs. error"), Encoding::colour);
+  session.measured["map"] = options.map;
+  session.measured["map_top"] = top;
+}
+
+void compare(const Options& options, Session& session) {
+  const Image reference = read_image(options.reference, Encoding::colour);
+  const Image test = read_image(options.test, Encoding::colour);
+  const ImageDifference difference =
+      compare_images(reference, test, options.reference, options.test);
+  report(difference, channel_name(difference, reference.channels), session);
+  if (!options.map.empty()) write_map(options, reference, test, session);
+  if (difference.rmse > options.max_rmse) {
+    session.exit_code = ExitCode::difference;
+    if (!session.quiet) {
+      fmt::print(stderr, "weft: RMSE {:.6g} is above --max-rmse {:.6g}\n", difference.rmse,
+                 options.max_rmse);
+    }
+  }
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Session& session) {
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "Measure how far picture TEST is from REF, in linear values (8-bit files are decoded from "
+      "sRGB): "
+      "RMSE, MAE, PSNR, SSIM, largest error. Exit code 3 where --max-rmse is exceeded");
+  auto options = std::make_shared<Options>();
+  command->add_option("reference", options->reference, "Picture that is taken as true")
+      ->option_text("REF")
+      ->required();
+  command->add_option("test", options->test, "Picture to judge")->option_text("TEST")->required();
+  command
+      ->add_option("--map", options->map,
+                   "Write the error of each pixel (mean of |TEST - REF| over R, G, B) in colours, "
+                   "with a legend")
+      ->option_text("FILE.png");
+  command
+      ->add_option(
+          "--map-top", options->map_top,
+          "Error that has the map's brightest colour; default: the 99.5th percentile, rounded up")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--max-rmse", options->max_rmse,
+                   "Exit with 3 where the RMSE is above X (linear values)")
+      ->option_text("X")
+      ->check(CLI::NonNegativeNumber);
+  command->callback([options, &session] { compare(*options, session); });
+}
 
 }  // namespace weft::cli
