@@ -15,7 +15,7 @@ namespace {
 
 constexpr Rgb white{1, 1, 1};
 constexpr Rgb ink{0.02F, 0.02F, 0.02F};
-constexpr int font_size = 13;
+constexpr int font_size = 15;
 constexpr int gap = 10;        // between the map, the bar and the numbers
 constexpr int bar_width = 18;  // pixels
 constexpr int tick_length = 5;

@@ -23,20 +23,20 @@ constexpr std::string_view style = R"css(
   :root { --ink: #e6e8eb; --soft: #9aa4af; --line: #363c44; --page: #16181b; --card: #1f2226; }
 }
 body { margin: 0; background: var(--page); color: var(--ink); font: 16px/1.5 system-ui, sans-serif; }
-main { max-width: 1280px; margin: 0 auto; padding: 2rem 1.25rem 3rem; }
+main { max-width: 1320px; margin: 0 auto; padding: 2rem 1.25rem 3rem; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .5rem; }
 h2 { font-size: 1.35rem; margin: 2.5rem 0 .25rem; padding-top: 1rem; border-top: 1px solid var(--line); }
 h3 { font-size: 1rem; margin: 1.4rem 0 .5rem; color: var(--soft); font-weight: 600; }
 p { max-width: 75ch; margin: .25rem 0 .75rem; }
 .row { display: flex; flex-wrap: wrap; gap: 1rem; align-items: flex-start; }
 figure { margin: 0; padding: .6rem; background: var(--card); border: 1px solid var(--line); border-radius: 6px;
-  box-sizing: border-box; flex: 0 1 auto; max-width: 100%; }
-figure img { display: block; max-width: 100%; height: auto; }
+  box-sizing: border-box; min-width: 0; }
+figure img { display: block; width: 100%; height: auto; }
 figcaption { margin-top: .45rem; font-weight: 600; }
 figcaption small { display: block; color: var(--soft); font-weight: 400; font-variant-numeric: tabular-nums; }
 .scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .92rem; }
-th, td { padding: .35rem .7rem; border-bottom: 1px solid var(--line); text-align: left; white-space: nowrap; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .86rem; }
+th, td { padding: .35rem .5rem; border-bottom: 1px solid var(--line); text-align: left; white-space: nowrap; }
 thead th { vertical-align: bottom; border-bottom-width: 2px; }
 th small { display: block; color: var(--soft); font-weight: 400; }
 .number { text-align: right; }
@@ -71,13 +71,19 @@ std::string small(const std::string& text) {
   return text.empty() ? "" : fmt::format("<small>{}</small>", html_escaped(text));
 }
 
+/// Figures of a row grow in proportion to their aspect, so that all are equally high, a map with
+/// its legend too.
 std::string figure_html(const ReportPicture& picture) {
+  constexpr double least_height = 220;  // pixels; a row that would be lower breaks instead
+  constexpr int padding = 22;           // of a figure, both sides, with its border
+  const double aspect = static_cast<double>(picture.image.width) / picture.image.height;
   const std::string caption = html_escaped(picture.caption);
   return fmt::format(
-      "<figure><a href=\"{0}.png\"><img src=\"{0}.png\" width=\"{1}\" height=\"{2}\" "
-      "alt=\"{3}\"></a>"
-      "<figcaption>{3}{4}</figcaption></figure>\n",
-      picture.name, picture.image.width, picture.image.height, caption, small(picture.note));
+      "<figure style=\"flex: {5:.4f} 1 {6:.0f}px; max-width: {7}px\"><a href=\"{0}.png\"><img "
+      "src=\"{0}.png\" "
+      "width=\"{1}\" height=\"{2}\" alt=\"{3}\"></a><figcaption>{3}{4}</figcaption></figure>\n",
+      picture.name, picture.image.width, picture.image.height, caption, small(picture.note), aspect,
+      aspect * least_height, picture.image.width + padding);
 }
 
 std::string row_html(const ReportRow& row) {
