@@ -43,7 +43,8 @@ class Settings {
   bool flag(const std::string& key, bool fallback) const;
   std::string text(const std::string& key) const;
   std::string text(const std::string& key, const std::string& fallback) const;
-  /// One of `choices`; @throws Error listing them. The first choice is the fallback.
+  /// One of `choices`, a string or a whole number spelt so; @throws Error listing them. The first
+  /// is the fallback.
   std::string choice(const std::string& key, const std::vector<std::string>& choices) const;
   std::vector<double> numbers(const std::string& key) const;
   Vec2 vec2(const std::string& key, const Vec2& fallback) const;
@@ -56,8 +57,8 @@ class Settings {
 
   /// A sub-table; empty settings where absent. Its `finish()` is called by this one's.
   Settings table(const std::string& key) const;
-  /// The same, where keys that are absent are filled in from `defaults`, a TOML text; a table that names its own
-  /// `type` takes none of them.
+  /// The same, where keys that are absent are filled in from `defaults`, a TOML text; a table that
+  /// names its own `type` takes none of them.
   Settings table(const std::string& key, const std::string& defaults) const;
   /// An array of tables (or of inline tables); empty where absent.
   std::vector<Settings> tables(const std::string& key) const;
@@ -69,12 +70,12 @@ class Settings {
 
   /// @throws Error  for the first key, here or in sub-tables, that nobody asked for: its line, and
   /// the names that
-  ///                were asked for there, and the nearest one. Where an override changed a table's `type`, what the
-  ///                file says for the type that it had is left aside instead.
+  ///                were asked for there, and the nearest one. Where an override changed a table's
+  ///                `type`, what the file says for the type that it had is left aside instead.
   void finish() const;
 
-  /// All keys and values as canonical JSON text (sorted keys, shortest numbers), sub-tables included. Of paths only
-  /// the file name, so that it does not depend on where things lie.
+  /// All keys and values as canonical JSON text (sorted keys, shortest numbers), sub-tables
+  /// included. Of paths only the file name, so that it does not depend on where things lie.
   std::string canonical_json() const;
 
  private:

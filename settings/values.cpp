@@ -89,7 +89,11 @@ std::string Settings::text(const std::string& key, const std::string& fallback) 
 
 std::string Settings::choice(const std::string& key,
                              const std::vector<std::string>& choices) const {
-  const std::string value = text(key, choices.front());
+  if (!has(key)) return choices.front();
+  const toml::node& node = node_->require(key);
+  // A choice may be spelt as a number: `bits = 8`.
+  const auto number = node.value_exact<std::int64_t>();
+  const std::string value = number ? std::to_string(*number) : text(key);
   if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
     throw bad_input(where(key),
                     fmt::format("'{}' is '{}', expected one of {}", node_->full(key), value,

@@ -1,0 +1,71 @@
+#include "codecs/cmf/chain.h"
+
+#include <algorithm>
+
+#include "codecs/cmf/rank_one.h"
+#include "codecs/cmf/refinement.h"
+
+namespace weft::cmf {
+
+Chain::Chain(const HemisphereSampling& lights, const HemisphereSampling& views,
+             const ChainOptions& options)
+    : n_lights_(lights.size()),
+      n_views_(views.size()),
+      options_(options),
+      light_map_(lights, ParabolicMap(options.resolution)),
+      view_map_(views, ParabolicMap(options.resolution)) {
+  if (options.half) {
+    const ParabolicMap map(options.resolution);
+    average_ = half_average(lights, views, map, options.difference_rings);
+    lookup_ = half_lookup(lights, views, map);
+  }
+  for (const Direction& light : lights.directions()) {
+    const double cosine = std::max(light.z, 1e-6F);
+    light_weights_.push_back(cosine * cosine);
+  }
+}
+
+FactorMaps Chain::factorise(const LaneVector& f) const {
+  if (!options_.half) {
+    const LightView factors = rank_one(f, n_lights_, n_views_);
+    return {light_map_.map_of(factors.light), {}, view_map_.map_of(factors.view)};
+  }
+  LaneVector half = half_map(f);
+  LightView factors = rank_one(residual(f, half), n_lights_, n_views_);
+  refine(f, lookup_, light_weights_, options_.refine, factors, half);
+  return {light_map_.map_of(factors.light), std::move(half), view_map_.map_of(factors.view)};
+}
+
+// Less than any reflectance: half's least positive value is 6e-8.
+constexpr float darkest = 1e-30F;
+
+// P_h: F_hd averaged over its columns. Below `floor` of its largest value Q is raised: the residual
+// (equation 7) stays bounded, and no texel that matters falls to zero in 8 bits. A map of zeros
+// becomes one of ones.
+LaneVector Chain::half_map(const LaneVector& f) const {
+  LaneVector map = multiply(average_, f);
+  Lanes largest;
+  for (const Lanes& texel : map) {
+    for (int k = 0; k < lane_count; ++k) largest[k] = std::max(largest[k], texel[k]);
+  }
+  for (Lanes& texel : map) {
+    for (int k = 0; k < lane_count; ++k) {
+      texel[k] = largest[k] > darkest ? std::max(texel[k], options_.floor * largest[k]) : 1.0F;
+    }
+  }
+  return map;
+}
+
+// Equation 7. The floor of Q makes every divisor positive.
+LaneVector Chain::residual(const LaneVector& f, const LaneVector& half) const {
+  LaneVector residual(f.size());
+  for (std::size_t pair = 0; pair < f.size(); ++pair) {
+    Lanes q;
+    for (std::size_t t = 0; t < 4; ++t)
+      add_scaled(q, lookup_[pair].weight[t], half[lookup_[pair].index[t]]);
+    for (int k = 0; k < lane_count; ++k) residual[pair][k] = f[pair][k] / q[k];
+  }
+  return residual;
+}
+
+}  // namespace weft::cmf

@@ -1,0 +1,34 @@
+#include "codecs/cmf/parabolic_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::cmf {
+
+BilinearTaps ParabolicMap::taps(const Direction& direction) const {
+  const Vec2 p = parabolic(direction);
+  const auto last = static_cast<float>(resolution_ - 1);
+  const float x = std::clamp((p.x + 1) * 0.5F * last, 0.0F, last);
+  const float y = std::clamp((1 - p.y) * 0.5F * last, 0.0F, last);
+  const int column = std::min(static_cast<int>(x), resolution_ - 2);
+  const int row = std::min(static_cast<int>(y), resolution_ - 2);
+  const float a = x - static_cast<float>(column);
+  const float b = y - static_cast<float>(row);
+  const auto first = static_cast<std::uint32_t>(row * resolution_ + column);
+  const auto below = first + static_cast<std::uint32_t>(resolution_);
+  return {{first, first + 1, below, below + 1},
+          {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b}};
+}
+
+Direction ParabolicMap::direction(int texel) const {
+  const auto last = static_cast<float>(resolution_ - 1);
+  Vec2 p(2 * static_cast<float>(texel % resolution_) / last - 1,
+         1 - 2 * static_cast<float>(texel / resolution_) / last);
+  const float radius = p.length();
+  if (radius > 1) p /= radius;
+  Direction d = from_parabolic(p);
+  d.z = std::max(d.z, 0.0F);
+  return d;
+}
+
+}  // namespace weft::cmf

@@ -1,0 +1,74 @@
+#include "codecs/sample_error.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace weft {
+
+namespace {
+
+struct Sums {
+  double error = 0;
+  double data = 0;
+  double count = 0;
+};
+
+std::vector<AppearanceQuery> texel_queries(const Btf& btf, int x, int y) {
+  const Texcoord uv((static_cast<float>(x) + 0.5F) / static_cast<float>(btf.width()),
+                    1 - (static_cast<float>(y) + 0.5F) / static_cast<float>(btf.height()));
+  std::vector<AppearanceQuery> queries;
+  queries.reserve(btf.views().size() * btf.lights().size());
+  for (const Direction& view : btf.views().directions()) {
+    for (const Direction& light : btf.lights().directions())
+      queries.push_back({uv, light, view, 0});
+  }
+  return queries;
+}
+
+Sums texel_sums(const Btf& btf, const Representation& representation, int x, int y) {
+  const std::vector<AppearanceQuery> queries = texel_queries(btf, x, y);
+  std::vector<Rgb> answers(queries.size());
+  std::vector<float> values(3 * queries.size());
+  representation.evaluate(queries, answers);
+  btf.abrdf(x, y, values);
+  Sums sums;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    if (!(queries[i].light.z > 0) || !(queries[i].view.z > 0)) continue;
+    for (int c = 0; c < 3; ++c) {
+      const double wanted = values[3 * i + c];
+      const double difference = answers[i][c] - wanted;
+      sums.error += difference * difference;
+      sums.data += wanted * wanted;
+      ++sums.count;
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+SampleError sample_error(const Btf& btf, const Representation& representation) {
+  std::vector<Sums> texels(static_cast<std::size_t>(btf.width()) * btf.height());
+  tbb::parallel_for(0, btf.width() * btf.height(), [&](int t) {
+    texels[t] = texel_sums(btf, representation, t % btf.width(), t / btf.width());
+  });
+  Sums all;
+  for (const Sums& texel : texels) {
+    all.error += texel.error;
+    all.data += texel.data;
+    all.count += texel.count;
+  }
+  SampleError result;
+  if (all.count > 0) result.rmse = std::sqrt(all.error / all.count);
+  if (all.data > 0) {
+    result.relative_rmse = std::sqrt(all.error / all.data);
+  } else if (all.error > 0) {
+    result.relative_rmse = std::numeric_limits<double>::infinity();
+  }
+  return result;
+}
+
+}  // namespace weft
