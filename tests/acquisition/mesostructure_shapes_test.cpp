@@ -28,9 +28,9 @@ Mesostructure read_bumps(const TemporaryFolder& folder, int levels) {
     for (int x = 0; x < 12; ++x)
       image.set_rgb(x, y, Rgb(static_cast<float>((x * 7 + y * 5) % 11) / 11));
   }
-  write_image(folder.path() / "bumps.exr", image, Encoding::linear);
+  write_image(folder.path / "bumps.exr", image, Encoding::linear);
   return read_mesostructure(
-      folder.write("bumps.toml", "type = 'heightfield'\nfile = 'bumps.exr'\nsmooth = true\n"),
+      write_file(folder, "bumps.toml", "type = 'heightfield'\nfile = 'bumps.exr'\nsmooth = true\n"),
       {"subdivide=" + std::to_string(levels)});
 }
 
@@ -300,7 +300,8 @@ TEST_CASE(
   const Mesostructure coarse = read("tissue");
   CHECK(coarse.mesh.triangles.size() > 50'000);
   CHECK(coarse.mesh.triangles.size() < 200'000);
-  // Facets approach the limit surface, and so its normals, as their size: a quarter after two levels.
+  // Facets approach the limit surface, and so its normals, as their size: a quarter after two
+  // levels.
   const auto deviation = [](const TriangleMesh& mesh) {
     double squares = 0;
     for (const auto& triangle : mesh.triangles) {

@@ -74,8 +74,8 @@ TEST_CASE("the registry's names are distinct, and its default materials are read
 
 TEST_CASE("a mesh keeps its names, its units and its place") {
   const TemporaryFolder folder;
-  folder.write("a.obj", square_obj);
-  const auto file = folder.write("a.toml", "type = 'mesh'\nfile = 'a.obj'\n" + red_and_blue);
+  write_file(folder, "a.obj", square_obj);
+  const auto file = write_file(folder, "a.toml", "type = 'mesh'\nfile = 'a.obj'\n" + red_and_blue);
   const Mesostructure m = read_mesostructure(file, {"tile_size=2.5"});
   CHECK(m.mesh.material_names == std::vector<std::string>{"red", "blue"});
   CHECK(m.mesh.normals.empty());
@@ -107,11 +107,11 @@ TEST_CASE("an offset shifts the content, and whole tiles of it change nothing") 
 
 TEST_CASE("a floor is added with its material") {
   const TemporaryFolder folder;
-  folder.write("a.obj", square_obj);
-  const auto file = folder.write("a.toml",
-                                 "type = 'mesh'\nfile = 'a.obj'\nfloor = { height = -0.5, material "
-                                 "= 'ground' }\noffset = [0.5, 0]\n" +
-                                     red_and_blue + "[materials.ground]\nalbedo = 0.1\n");
+  write_file(folder, "a.obj", square_obj);
+  const auto file = write_file(folder, "a.toml",
+                               "type = 'mesh'\nfile = 'a.obj'\nfloor = { height = -0.5, material "
+                               "= 'ground' }\noffset = [0.5, 0]\n" +
+                                   red_and_blue + "[materials.ground]\nalbedo = 0.1\n");
   for (const bool smooth : {false, true}) {
     const Mesostructure m = read_mesostructure(file, {smooth ? "smooth=true" : "smooth=false"});
     CHECK(m.mesh.material_names.back() == "ground");
@@ -123,10 +123,10 @@ TEST_CASE("a floor is added with its material") {
 
 TEST_CASE("materials fall to `default`, and those that are missing or unused are named") {
   const TemporaryFolder folder;
-  folder.write("a.obj", square_obj);
+  write_file(folder, "a.obj", square_obj);
   const std::string head = "type = 'mesh'\nfile = 'a.obj'\n";
   const auto read = [&](const std::string& materials) {
-    return read_mesostructure(folder.write("a.toml", head + materials));
+    return read_mesostructure(write_file(folder, "a.toml", head + materials));
   };
   CHECK(read("[materials.default]\nalbedo = 0.5\n").materials.size() == 2);
   const std::string missing = refusal([&] { read("[materials.red]\nalbedo = 0.5\n"); });
@@ -156,7 +156,7 @@ TEST_CASE("a furnace is a few overrides away") {
 TEST_CASE("mistakes in a file are named with their line") {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text, const std::vector<std::string>& overrides = {}) {
-    return refusal([&] { read_mesostructure(folder.write("a.toml", text), overrides); });
+    return refusal([&] { read_mesostructure(write_file(folder, "a.toml", text), overrides); });
   };
   CHECK_THAT(read("type = 'ring'\n"), Contains("a.toml:1:1") && Contains("did you mean 'rings'"));
   CHECK_THAT(read("type = 'checker'\nresolution = 16\nheigth = 1\n"),
@@ -168,7 +168,7 @@ TEST_CASE("mistakes in a file are named with their line") {
              Contains("gone.obj") && Contains("No such file"));
   CHECK_THAT(read("type = 'heightfield'\nfile = 'gone.png'\n"), Contains("gone.png"));
   CHECK_THAT(read("type = 'tissue'\nwarp = 3\n"), Contains("a.toml:2:1") && Contains("even"));
-  folder.write("points.obj", "v 0 0 0\n");
+  write_file(folder, "points.obj", "v 0 0 0\n");
   CHECK_THAT(read("type = 'mesh'\nfile = 'points.obj'\n"), Contains("mesh has no faces"));
 }
 
@@ -178,8 +178,9 @@ TEST_CASE("a height field has the image's first row near v = 1, and wraps") {
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 4; ++x) image.set_rgb(x, y, Rgb(static_cast<float>(x + 4 * y) / 8));
   }
-  write_image(folder.path() / "h.exr", image, Encoding::linear);
-  const auto file = folder.write("h.toml", "type = 'heightfield'\nfile = 'h.exr'\nheight = 0.5\n");
+  write_image(folder.path / "h.exr", image, Encoding::linear);
+  const auto file =
+      write_file(folder, "h.toml", "type = 'heightfield'\nfile = 'h.exr'\nheight = 0.5\n");
   const Mesostructure m = read_mesostructure(file);
   CHECK(m.mesh.triangles.size() == 16);
   const auto height_at = [&](float x, float y) {
@@ -199,7 +200,7 @@ TEST_CASE("a height field has the image's first row near v = 1, and wraps") {
   }
 
   image.set_rgb(2, 1, Rgb(std::numeric_limits<float>::quiet_NaN()));
-  write_image(folder.path() / "h.exr", image, Encoding::linear);
+  write_image(folder.path / "h.exr", image, Encoding::linear);
   CHECK_THAT(refusal([&] { read_mesostructure(file); }),
              Contains("h.exr") && Contains("pixel (2, 1)"));
 }
@@ -230,12 +231,12 @@ TEST_CASE("a height field and the same field as an OBJ are the same mesh") {
           "f " + std::to_string(a) + " " + std::to_string(b + 1) + " " + std::to_string(b) + "\n";
     }
   }
-  folder.write("h.obj", obj);
-  write_image(folder.path() / "h.exr", image, Encoding::linear);
-  const Mesostructure from_image = read_mesostructure(
-      folder.write("i.toml", "type = 'heightfield'\nfile = 'h.exr'\nheight = 1\nsmooth = true\n"));
-  const Mesostructure from_obj = read_mesostructure(folder.write(
-      "o.toml",
+  write_file(folder, "h.obj", obj);
+  write_image(folder.path / "h.exr", image, Encoding::linear);
+  const Mesostructure from_image = read_mesostructure(write_file(
+      folder, "i.toml", "type = 'heightfield'\nfile = 'h.exr'\nheight = 1\nsmooth = true\n"));
+  const Mesostructure from_obj = read_mesostructure(write_file(
+      folder, "o.toml",
       "type = 'mesh'\nfile = 'h.obj'\nsmooth = true\n[materials.default]\nalbedo = 0.5\n"));
   REQUIRE(from_image.mesh.triangles.size() == from_obj.mesh.triangles.size());
   for (std::size_t t = 0; t < from_image.mesh.triangles.size(); ++t) {

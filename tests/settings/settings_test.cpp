@@ -8,6 +8,7 @@
 
 #include "btf/error.h"
 #include "settings/nearest_name.h"
+#include "tests/temporary_folder.h"
 
 using namespace weft;
 using Catch::Matchers::Contains;
@@ -183,13 +184,11 @@ TEST_CASE("canonical JSON has sorted keys, shortest numbers and no folders") {
 }
 
 TEST_CASE("paths are relative to the file they stand in") {
-  const auto folder = std::filesystem::temp_directory_path() / "weft_settings_test";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "a.toml") << "file = 'b.obj'\nwhole = '/x/y'\n";
-  const Settings s = Settings::from_file(folder / "a.toml");
-  CHECK(s.path("file") == folder / "b.obj");
+  const TemporaryFolder folder;
+  std::ofstream(folder.path / "a.toml") << "file = 'b.obj'\nwhole = '/x/y'\n";
+  const Settings s = Settings::from_file(folder.path / "a.toml");
+  CHECK(s.path("file") == folder.path / "b.obj");
   CHECK(s.path("whole") == "/x/y");
-  std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("the nearest name is found, and none where nothing is near") {

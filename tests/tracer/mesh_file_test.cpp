@@ -1,7 +1,6 @@
 // OBJ and PLY: names, polygons, frames, and what is refused with its place.
 #include "tracer/mesh_file.h"
 
-#include <unistd.h>
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -10,37 +9,29 @@
 #include <fstream>
 
 #include "btf/error.h"
+#include "tests/temporary_folder.h"
 
 using namespace weft;
 using Catch::Matchers::Contains;
 
 namespace {
 
-/// A file that is gone with its owner.
-class TemporaryFile {
- public:
-  TemporaryFile(const std::string& name, const std::string& content)
-      : path_(std::filesystem::temp_directory_path() /
-              ("weft_" + std::to_string(getpid()) + name)) {
-    std::ofstream(path_, std::ios::binary) << content;
-  }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+std::filesystem::path write(const TemporaryFolder& folder, const std::string& name,
+                            const std::string& content) {
+  std::ofstream(folder.path / name, std::ios::binary) << content;
+  return folder.path / name;
+}
 
 TriangleMesh read(const std::string& name, const std::string& content) {
-  return read_mesh(TemporaryFile(name, content).path());
+  const TemporaryFolder folder;
+  return read_mesh(write(folder, name, content));
 }
 
 std::string refusal(const std::string& name, const std::string& content) {
-  const TemporaryFile file(name, content);
+  const TemporaryFolder folder;
+  const std::filesystem::path file = write(folder, name, content);
   try {
-    read_mesh(file.path());
+    read_mesh(file);
   } catch (const Error& error) {
     CHECK(error.kind() == Error::Kind::bad_input);
     CHECK_THAT(error.what(), Contains(name));
