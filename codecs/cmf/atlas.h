@@ -31,9 +31,10 @@ struct AtlasLayout {
 AtlasLayout atlas_layout(const Model& model, std::size_t factor);
 
 /// The atlas's texels [y][x][rgb] from [map][row][column][rgb]; places without a map are zero.
+/// Empty for empty maps.
 template <typename Value>
 std::vector<Value> to_atlas(const std::vector<Value>& maps, const AtlasLayout& layout) {
-  std::vector<Value> atlas(3 * layout.texels());
+  std::vector<Value> atlas(maps.empty() ? 0 : 3 * layout.texels());
   const std::size_t row_values = 3 * static_cast<std::size_t>(layout.resolution);
   for (std::size_t i = 0; i < maps.size(); i += row_values) {
     std::copy_n(&maps[i], row_values, &atlas[layout.row_start(i / row_values)]);
