@@ -1,9 +1,116 @@
-// weft compress: not here yet.
+// weft compress IN.btf: fits a codec to a raw BTF, writes it, and tells its size and its error at
+// the samples.
 
+#include <fmt/core.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "btf/btf_file.h"
+#include "btf/error.h"
 #include "cli/command.h"
+#include "codecs/representation.h"
+#include "codecs/sample_error.h"
 
 namespace weft::cli {
 
-void add_compress(CLI::App& /*app*/, Session& /*session*/) {}
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+  std::string input;
+  std::string output;
+  std::string codec = "cmf";
+  std::vector<std::string> parameters;
+};
+
+std::string codec_names() {
+  std::string names;
+  for (const Codec& codec : codecs()) names += (names.empty() ? "" : ", ") + codec.name;
+  return names;
+}
+
+std::string parameter_table() {
+  std::string table;
+  for (const Codec& codec : codecs()) {
+    if (!codec.parameters.empty()) {
+      table +=
+          fmt::format("\nParameters of {} (--set KEY=VALUE):\n{}", codec.name, codec.parameters);
+    }
+  }
+  return table;
+}
+
+std::uintmax_t size_on_disk(const fs::path& folder) {
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) bytes += entry.file_size();
+  return bytes;
+}
+
+// A dataset that is read here would vanish under its reader.
+void refuse_same_folder(const Options& options) {
+  std::error_code ignored;
+  if (fs::equivalent(options.input, options.output, ignored)) {
+    throw bad_input("--output", fmt::format("'{}' is the input itself", options.output));
+  }
+}
+
+void compress(const Options& options, Session& session, bool seed_given) {
+  const Codec& codec = codec_named(options.codec);
+  refuse_same_folder(options);
+  std::vector<std::string> overrides = options.parameters;
+  if (seed_given) overrides.insert(overrides.begin(), fmt::format("seed={}", session.seed));
+  const Settings parameters = Settings::from_text("", "--set", overrides);
+  const auto btf = std::make_shared<const Btf>(read_btf(options.input));
+
+  Progress progress("compress " + options.codec, session.quiet);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto fitted = codec.fit(btf, parameters, progress);
+  const std::chrono::duration<double> fit_time = std::chrono::steady_clock::now() - begin;
+  progress.finish();
+  fitted->save(options.output);
+  const SampleError error = sample_error(*btf, *fitted);
+  const std::uintmax_t file_bytes = size_on_disk(options.output);
+
+  session.measured["codec"] = options.codec;
+  session.measured["input"] = options.input;
+  session.measured["output"] = options.output;
+  session.measured["bytes"] = fitted->bytes();
+  session.measured["constant_bytes"] = fitted->constant_bytes();
+  session.measured["file_bytes"] = file_bytes;
+  session.measured["ratio"] = compression_ratio(*fitted);
+  session.measured["fit_seconds"] = fit_time.count();
+  session.measured["rmse"] = error.rmse;
+  session.measured["relative_rmse"] = error.relative_rmse;
+  session.say(fmt::format("{}  {}", options.output, codec.summary));
+  session.say(fmt::format("textures    {} bytes, {:.1f} times below 24-bit input", fitted->bytes(),
+                          compression_ratio(*fitted)));
+  session.say(fmt::format("on disk     {} bytes", file_bytes));
+  session.say(fmt::format("fitted in   {:.2f} s", fit_time.count()));
+  session.say(fmt::format("RMSE        {:.6g} 1/sr at the samples ({:.2f} % of the data's RMS)",
+                          error.rmse, 100 * error.relative_rmse));
+}
+
+}  // namespace
+
+void add_compress(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("compress", "Fit a codec to a raw BTF");
+  command->add_option("input", options->input, "Folder of the raw BTF (NAME.btf)")->required();
+  command->add_option("--codec", options->codec, "One of " + codec_names())->capture_default_str();
+  command->add_option("-o,--output", options->output, "Folder to write, e.g. NAME.cmf")->required();
+  command
+      ->add_option("--set", options->parameters,
+                   "A parameter of the codec, KEY=VALUE; may be repeated")
+      ->allow_extra_args(false);
+  command->footer(parameter_table());
+  command->callback([&app, &session, options] {
+    compress(*options, session, app.get_option("--seed")->count() > 0);
+  });
+}
 
 }  // namespace weft::cli
