@@ -1,0 +1,85 @@
+// The shaders' texts. Names start with weft_, so that they don't meet those of a representation.
+
+#include "gl_preview/scene_shaders.h"
+
+namespace weft {
+
+std::string vertex_shader() {
+  return R"(#version 450 core
+layout(location = 0) in vec3 weft_in_position;
+layout(location = 1) in vec3 weft_in_normal;
+layout(location = 2) in vec3 weft_in_tangent;
+layout(location = 3) in vec2 weft_in_texcoord;
+layout(location = 0) uniform vec3 weft_eye;
+layout(location = 1) uniform vec3 weft_view_rows[3];  // right, up, forward
+layout(location = 4) uniform vec3 weft_projection;    // scales of x and y, near plane
+layout(location = 0) out vec3 weft_position;
+layout(location = 1) out vec3 weft_normal;
+layout(location = 2) out vec3 weft_tangent;
+layout(location = 3) out vec2 weft_texcoord;
+invariant gl_Position;
+void main() {
+  weft_position = weft_in_position;
+  weft_normal = weft_in_normal;
+  weft_tangent = weft_in_tangent;
+  weft_texcoord = weft_in_texcoord;
+  vec3 d = weft_in_position - weft_eye;
+  vec3 seen = vec3(dot(weft_view_rows[0], d), dot(weft_view_rows[1], d), dot(weft_view_rows[2], d));
+  gl_Position = vec4(seen.xy * weft_projection.xy, weft_projection.z, seen.z);
+}
+)";
+}
+
+std::string depth_shader() {
+  return "#version 450 core\nvoid main() {}\n";
+}
+
+std::string fragment_shader(const std::string& appearance) {
+  return "#version 450 core\n" + appearance + R"(
+layout(location = 0) in vec3 weft_position;
+layout(location = 1) in vec3 weft_normal;
+layout(location = 2) in vec3 weft_tangent;
+layout(location = 3) in vec2 weft_texcoord;
+layout(location = 0) uniform vec3 weft_eye;
+layout(location = 5) uniform vec2 weft_repeat;
+layout(location = 6) uniform vec2 weft_texels;  // of one tile
+layout(location = 7) uniform int weft_light_count;
+layout(location = 8) uniform bool weft_automatic_lod;
+layout(location = 9) uniform float weft_lod;
+struct WeftLight { vec4 position; vec4 power; };  // w = 0: position is the direction to the light
+layout(std430, binding = 0) readonly buffer WeftLights { WeftLight weft_lights[]; };
+layout(location = 0) out vec4 weft_colour;
+
+void main() {
+  vec2 uv = weft_texcoord * weft_repeat;
+  float lod = weft_lod;
+  if (weft_automatic_lod) {
+    vec2 across = dFdx(uv) * weft_texels;
+    vec2 down = dFdy(uv) * weft_texels;
+    // The wider of the pixel's two axes; never below one texel.
+    lod = 0.5 * log2(max(max(dot(across, across), dot(down, down)), 1.0));
+  }
+  vec3 n = normalize(weft_normal);
+  vec3 t = normalize(weft_tangent - n * dot(n, weft_tangent));
+  vec3 b = cross(n, t);
+  vec3 to_eye = normalize(weft_eye - weft_position);
+  vec3 view = vec3(dot(to_eye, t), dot(to_eye, b), dot(to_eye, n));
+  vec3 sum = vec3(0.0);
+  if (view.z > 0.0) {
+    for (int i = 0; i < weft_light_count; ++i) {
+      WeftLight light = weft_lights[i];
+      vec3 d = light.position.xyz - weft_position * light.position.w;
+      float distance2 = dot(d, d);
+      vec3 to_light = d * inversesqrt(distance2);
+      // Irradiance perpendicular to the light's direction.
+      vec3 irradiance = light.power.rgb / (light.position.w > 0.0 ? distance2 : 1.0);
+      vec3 local = vec3(dot(to_light, t), dot(to_light, b), dot(to_light, n));
+      if (local.z > 0.0) sum += btf_evaluate(uv, local, view, lod) * irradiance;
+    }
+  }
+  weft_colour = vec4(sum, 1.0);
+}
+)";
+}
+
+}  // namespace weft
