@@ -48,20 +48,23 @@ class PowerMap {
     return sum;
   }
 
-  /// All light of a region, from the mean of its directions weighted by power.
+  /// All light of a region from the mean of its directions, weighted by power. It carries the
+  /// region's vector irradiance, so that every surface that sees the whole region gets what the
+  /// region itself would give.
   DirectionalLight light(const Region& r) const {
     Imath::V3d towards(0);
     Imath::V3d irradiance(0);
+    double total = 0;
     for (int y = r.y0; y < r.y1; ++y) {
       for (int x = r.x0; x < r.x1; ++x) {
         towards += Imath::V3d(direction(x, y)) * power(x, y);
+        total += power(x, y);
         const Rgb radiance = environment_.radiance.rgb(x, y);
         irradiance += Imath::V3d(radiance.x, radiance.y, radiance.z) * solid_angle(y);
       }
     }
-    return {Vec3(towards.normalized()),
-            Rgb(static_cast<float>(irradiance.x), static_cast<float>(irradiance.y),
-                static_cast<float>(irradiance.z))};
+    irradiance *= towards.length() / total;
+    return {Vec3(towards.normalized()), Rgb(Vec3(irradiance))};
   }
 
   /// Cuts the longer side (as seen on the sphere) where both halves have the same power, nearest
@@ -79,11 +82,16 @@ class PowerMap {
     const double half = power(r) / 2;
     double sum = 0;
     int at = begin + 1;
-    for (; at < end - 1; ++at) {
+    for (; at < end; ++at) {
       const Region line = across ? Region{at - 1, r.y0, at, r.y1} : Region{r.x0, at - 1, r.x1, at};
-      sum += power(line);
-      if (sum >= half) break;
+      const double next = sum + power(line);
+      if (next >= half) {
+        if (half - sum < next - half) --at;
+        break;
+      }
+      sum = next;
     }
+    at = std::clamp(at, begin + 1, end - 1);
     return {first(at), across ? Region{at, r.y0, r.x1, r.y1} : Region{r.x0, at, r.x1, r.y1}};
   }
 

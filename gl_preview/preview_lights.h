@@ -19,8 +19,8 @@ struct PreviewLights {
 PreviewLights preview_lights(const Scene& scene);
 
 /// Splits the picture into regions of equal power by median cut [Debevec, "A median cut algorithm
-/// for light probe sampling", 2005]; each region's power (in W/m^2) comes from its mean direction.
-/// Deterministic.
+/// for light probe sampling", 2005]; each region becomes one light, of its irradiance (W/m^2) from
+/// its mean direction. Deterministic.
 std::vector<DirectionalLight> median_cut(const EnvironmentLight& environment, int most_lights);
 
 }  // namespace weft

@@ -60,7 +60,13 @@ void main() {
     lod = 0.5 * log2(max(max(dot(across, across), dot(down, down)), 1.0));
   }
   vec3 n = normalize(weft_normal);
-  vec3 t = normalize(weft_tangent - n * dot(n, weft_tangent));
+  vec3 t = weft_tangent - n * dot(n, weft_tangent);
+  // A tangent along the normal: any perpendicular, the one that the path tracer takes.
+  if (dot(t, t) == 0.0) {
+    vec3 other = abs(n.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    t = other - n * dot(n, other);
+  }
+  t = normalize(t);
   vec3 b = cross(n, t);
   vec3 to_eye = normalize(weft_eye - weft_position);
   vec3 view = vec3(dot(to_eye, t), dot(to_eye, b), dot(to_eye, n));
