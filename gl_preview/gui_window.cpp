@@ -83,7 +83,7 @@ GuiWindow::GuiWindow(int width, int height, const std::string& title)
 
 GuiWindow::~GuiWindow() = default;
 
-bool GuiWindow::frame(bool wait, const std::function<void()>& contents) {
+bool GuiWindow::draw(bool wait, const std::function<void()>& contents) {
   if (wait) {
     glfwWaitEventsTimeout(0.1);
   } else {
@@ -109,18 +109,21 @@ bool GuiWindow::frame(bool wait, const std::function<void()>& contents) {
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   check_gl("drawing the window");
-  glfwSwapBuffers(glfw_->window);
   return glfwWindowShouldClose(glfw_->window) == GLFW_FALSE &&
          glfwGetKey(glfw_->window, GLFW_KEY_ESCAPE) != GLFW_PRESS;
 }
 
-Image GuiWindow::screenshot() const {
+void GuiWindow::show() {
+  glfwSwapBuffers(glfw_->window);
+}
+
+Image GuiWindow::pixels() const {
   int width = 0;
   int height = 0;
   glfwGetFramebufferSize(glfw_->window, &width, &height);
   std::vector<std::uint8_t> bytes(std::size_t{3} * width * height);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glReadBuffer(GL_FRONT);
+  glReadBuffer(GL_BACK);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
   check_gl("screenshot");

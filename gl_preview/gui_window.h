@@ -18,12 +18,15 @@ class GuiWindow {
   GuiWindow(const GuiWindow&) = delete;
   GuiWindow& operator=(const GuiWindow&) = delete;
 
-  /// Runs `contents` (ImGui calls) over the whole window and shows the frame. @param wait  first
-  /// waits for input, at most a tenth of a second. @returns false when the user closed the window.
-  bool frame(bool wait, const std::function<void()>& contents);
+  /// Draws a frame: `contents` (ImGui calls) over the whole window. @param wait  first waits for
+  /// input, at most a tenth of a second. @returns false when the user closed the window.
+  bool draw(bool wait, const std::function<void()>& contents);
 
-  /// The pixels shown last, 0..1 as on the screen, rows from the top.
-  Image screenshot() const;
+  /// The pixels drawn and not yet shown, 0..1 as on the screen, rows from the top.
+  Image pixels() const;
+
+  /// Shows what was drawn.
+  void show();
 
  private:
   struct Glfw;

@@ -92,10 +92,12 @@ class PreviewApp {
     show_controls();
     const int columns = static_cast<int>(panes_.size()) + (panes_.size() > 1 ? 1 : 0);
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const float line = ImGui::GetTextLineHeightWithSpacing();
+    // The title above; below, at most the legend, its numbers, two lines of text and a slider.
+    const float around =
+        5 * ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeightWithSpacing();
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     const int width = std::max(16, static_cast<int>((room.x - gap * (columns - 1)) / columns));
-    const int height = std::max(16, static_cast<int>(room.y - 4 * line));
+    const int height = std::max(16, static_cast<int>(room.y - around));
     resize(width, height);
     if (stale_ || continuous_) draw_panes();
     for (std::size_t i = 0; i < panes_.size(); ++i) {
@@ -150,7 +152,7 @@ class PreviewApp {
   void measure_error() {
     if (panes_.size() < 2) return;
     numbers_ = error_numbers(panes_[0].pixels, panes_[compared_].pixels);
-    if (!full_scale_) full_scale_ = round_scale(numbers_.largest / 4);
+    if (!full_scale_) full_scale_ = round_scale(numbers_.largest);
   }
 
   void display() {
@@ -171,9 +173,8 @@ class PreviewApp {
       ImGui::SetNextItemWidth(100);
       stale_ |= ImGui::SliderFloat("lod", &fixed_lod_, 0, 8, "%.1f");
     }
-    ImGui::SameLine(0, 24);
     ImGui::TextUnformatted(
-        "drag: orbit   right drag or shift: light   wheel: distance   Esc: quit");
+        "drag: orbit    right or shift drag: light    wheel: distance    Esc: quit");
     if (redisplay && drawn_ > 0) display();
   }
 
@@ -214,9 +215,10 @@ class PreviewApp {
   }
 
   void show_error_controls(float full) {
-    ImGui::TextUnformatted(fmt::format("mean {:.3g} ({:.2f} % of the mean), most {:.3g}",
-                                       numbers_.mean, 100 * numbers_.relative, numbers_.largest)
+    ImGui::TextUnformatted(fmt::format("mean {:.3g} ({:.2f} % of the left mean)", numbers_.mean,
+                                       100 * numbers_.relative)
                                .c_str());
+    ImGui::TextUnformatted(fmt::format("largest {:.3g}", numbers_.largest).c_str());
     ImGui::SetNextItemWidth(120);
     bool redisplay =
         ImGui::SliderFloat("full scale", &full, 1e-4F, 10, "%.4f", ImGuiSliderFlags_Logarithmic);
@@ -287,17 +289,22 @@ WindowResult preview_window(std::vector<PreviewPane> panes, const WindowOptions&
   const Camera& camera = panes.front().scene.camera;
   const int columns = static_cast<int>(panes.size()) + (panes.size() > 1 ? 1 : 0);
   const int pane_width = columns > 1 ? std::min(camera.width, 480) : camera.width;
-  GuiWindow window(columns * pane_width + 32, std::min(camera.height, 800) + 120, "weft preview");
+  constexpr int margins = 16;
+  constexpr int controls = 190;
+  GuiWindow window(columns * (pane_width + margins), std::min(camera.height, pane_width) + controls,
+                   "weft preview");
   PreviewApp app(std::move(panes), options);
   int frames = 0;
-  bool open = true;
-  while (open && (options.frames == 0 || frames < options.frames)) {
+  for (bool last = false; !last;) {
     // The second frame shows what the first one laid out; after that, only input changes anything.
-    open = window.frame(options.frames == 0 && frames > 1, [&] { app.frame(); });
+    const bool wait = options.frames == 0 && frames > 1;
+    last = !window.draw(wait, [&] { app.frame(); });
     ++frames;
-  }
-  if (!options.screenshot.empty()) {
-    write_image(options.screenshot, window.screenshot(), Encoding::linear);
+    last |= frames == options.frames;
+    if (last && !options.screenshot.empty()) {
+      write_image(options.screenshot, window.pixels(), Encoding::linear);
+    }
+    window.show();
   }
   return app.result(frames);
 }

@@ -11,10 +11,13 @@ inline weft::SceneShape unit_quad(std::size_t material = 0) {
   weft::SceneShape shape;
   shape.name = "quad";
   shape.material = material;
-  shape.mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  for (const weft::Vec2& uv :
+       {weft::Vec2(0, 0), weft::Vec2(1, 0), weft::Vec2(1, 1), weft::Vec2(0, 1)}) {
+    shape.mesh.positions.emplace_back(2 * uv.x - 1, 2 * uv.y - 1, 0.0F);
+    shape.mesh.texcoords.push_back(uv);
+  }
   shape.mesh.normals.assign(4, {0, 0, 1});
   shape.mesh.tangents.assign(4, {1, 0, 0});
-  shape.mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   shape.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return shape;
 }

@@ -1,0 +1,42 @@
+// Every registered codec in the variants that its parameters offer, fitted to one BTF.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "codecs/representation.h"
+
+struct FittedVariant {
+  std::string name;  ///< codec and parameters
+  std::unique_ptr<weft::Representation> representation;
+};
+
+/// For each codec, each combination of those of the parameters below that it has; a new codec is
+/// fitted with its defaults.
+inline std::vector<FittedVariant> fitted_variants(const std::shared_ptr<const weft::Btf>& btf) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> offered = {
+      {"bits", {"bits=8", "bits=float"}}, {"clustered", {"clustered=true", "clustered=false"}}};
+  std::vector<FittedVariant> variants;
+  for (const weft::Codec& codec : weft::codecs()) {
+    std::vector<std::vector<std::string>> combinations = {{}};
+    for (const auto& [key, choices] : offered) {
+      if (codec.parameters.find(key + " ") == std::string::npos) continue;
+      std::vector<std::vector<std::string>> longer;
+      for (const auto& combination : combinations) {
+        for (const std::string& choice : choices) {
+          longer.push_back(combination);
+          longer.back().push_back(choice);
+        }
+      }
+      combinations = longer;
+    }
+    for (const auto& overrides : combinations) {
+      std::string name = codec.name;
+      for (const std::string& choice : overrides) name += " " + choice;
+      weft::Progress silent;
+      const auto settings = weft::Settings::from_text("", "--set", overrides);
+      variants.push_back({name, codec.fit(btf, settings, silent)});
+    }
+  }
+  return variants;
+}
