@@ -7,7 +7,7 @@ void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uin
   const Vec3& p = mesh.positions[a];
   const Vec3& q = mesh.positions[b];
   const Vec3& r = mesh.positions[c];
-  if ((q - p).cross(r - p).length2() == 0) return;
+  if (p == q || q == r || r == p) return;
   mesh.triangles.push_back({a, b, c});
   mesh.materials.push_back(0);
 }
