@@ -8,6 +8,7 @@
 #include <assimp/Importer.hpp>
 
 #include "btf/error.h"
+#include "tracer/ply_length.h"
 
 namespace weft {
 
@@ -49,6 +50,7 @@ void append(PolygonMesh& mesh, const aiMesh& part, const std::string& file) {
 }  // namespace
 
 PolygonMesh read_ply(const std::filesystem::path& path) {
+  require_whole_ply(path);
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path.string(), 0);
   if (scene == nullptr) throw bad_input(path.string(), importer.GetErrorString());

@@ -128,10 +128,25 @@ TEST_CASE("bad meshes are refused with file and line") {
              Contains("vertex 0"));
   CHECK_THAT(refusal("range.ply", ply_header("ascii", 3, 1) + "0 0 0\n1 0 0\n1 1 0\n3 0 1 7\n"),
              Contains("vertex 7"));
-  CHECK_THAT(refusal("half.ply", ply_header("ascii", 3, 1) + "0 0 0\n1 0"), !Contains("no error"));
-  const std::string binary = binary_ply(false);
-  CHECK_THAT(refusal("cut.ply", binary.substr(0, binary.size() - 9)), !Contains("no error"));
-  CHECK_THAT(refusal("garbage.ply", "this is no mesh"), !Contains("no error"));
+  CHECK_THAT(refusal("half.ply", ply_header("ascii", 3, 1) + "0 0 0\n1 0"),
+             Contains("the line of vertex 1 of 3 ends early"));
+  CHECK_THAT(refusal("gone.ply", ply_header("ascii", 3, 1) + "0 0 0\n1 0 0\n"),
+             Contains("the file ends within vertex 2 of 3"));
+  CHECK_THAT(refusal("row.ply", ply_header("ascii", 3, 1) + "0 0 0\n1 0 0\n1 1 0\n4 0 1 2\n"),
+             Contains("the line of face 0 of 1 ends early"));
+  for (const bool big_endian : {false, true}) {
+    const std::string whole = binary_ply(big_endian);
+    const std::size_t header = whole.find("end_header\n") + 11;
+    for (std::size_t length = header; length < whole.size(); ++length) {
+      const bool in_vertices = length < header + 4 * 12;
+      CHECK_THAT(refusal("cut.ply", whole.substr(0, length)),
+                 Contains(in_vertices ? "ends within vertex" : "ends within face 0 of 1"));
+    }
+  }
+  CHECK_THAT(refusal("header.ply", ply_header("ascii", 3, 1).substr(0, 60)),
+             Contains("within its header"));
+  CHECK_THAT(refusal("garbage.ply", "this is no mesh"),
+             Contains("garbage.ply:1") && Contains("begins with"));
   CHECK_THAT(refusal("mesh.stl", "solid"), Contains("known: .obj, .ply"));
   CHECK_THROWS_WITH(read_mesh("/nowhere/a.obj"),
                     Contains("/nowhere/a.obj") && Contains("No such file"));
