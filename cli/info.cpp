@@ -1,9 +1,102 @@
-// weft info: not here yet.
+// weft info: what a dataset is, without rendering it: sizes, directions, bytes, parameters,
+// provenance.
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "btf/atomic_file.h"
+#include "btf/btf_file.h"
+#include "btf/direction.h"
 #include "cli/command.h"
+#include "codecs/representation.h"
 
 namespace weft::cli {
 
-void add_info(CLI::App& /*app*/, Session& /*session*/) {}
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+std::uintmax_t bytes_on_disk(const fs::path& folder) {
+  std::uintmax_t sum = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) sum += entry.file_size();
+  }
+  return sum;
+}
+
+ordered_json describe_directions(const HemisphereSampling& sampling) {
+  float lowest = 0;
+  for (const Direction& d : sampling.directions()) lowest = std::max(lowest, theta_of(d));
+  return {{"count", sampling.size()}, {"largest_theta", degrees(lowest)}};
+}
+
+/// The header only: a raw BTF's pixels may be gigabytes.
+ordered_json describe_raw(const fs::path& folder) {
+  const BtfHeader header = read_btf_header(folder);
+  const std::size_t samples = static_cast<std::size_t>(header.width) * header.height *
+                              header.views.size() * header.lights.size() * 3;
+  const bool half_floats = header.pixel_type == PixelType::half;
+  return {{"codec", "raw"},
+          {"quantity", header.quantity},
+          {"texels", {header.width, header.height}},
+          {"tile_size", header.tile_size},
+          {"views", describe_directions(header.views)},
+          {"lights", describe_directions(header.lights)},
+          {"pixel", half_floats ? "half" : "float"},
+          {"bytes", samples * (half_floats ? sizeof(half) : sizeof(float))}};
+}
+
+ordered_json describe_compressed(const fs::path& folder) {
+  const auto representation = open_representation(folder);
+  const Imath::V2i texels = representation->texels();
+  return {{"codec", representation->codec()},
+          {"texels", {texels.x, texels.y}},
+          {"views", describe_directions(representation->views())},
+          {"lights", describe_directions(representation->lights())},
+          {"levels_of_detail", representation->has_lod()},
+          {"bytes", representation->bytes()},
+          {"constant_bytes", representation->constant_bytes()},
+          {"ratio", compression_ratio(*representation)}};
+}
+
+/// One line a value; tables indented below their name.
+void print(const ordered_json& value, const Session& session, const std::string& indent) {
+  for (const auto& [key, item] : value.items()) {
+    const bool table = item.is_object() && !item.empty();
+    session.say(fmt::format("{}{:<{}} {}", indent, key, 20 - indent.size(),
+                            table              ? ""
+                            : item.is_string() ? item.get<std::string>()
+                                               : item.dump()));
+    if (table) print(item, session, indent + "  ");
+  }
+}
+
+void info(const fs::path& folder, Session& session) {
+  const bool raw = fs::exists(folder / "btf.json");
+  ordered_json& measured = session.measured;
+  measured["path"] = folder.string();
+  measured.update(raw ? describe_raw(folder) : describe_compressed(folder));
+  measured["file_bytes"] = bytes_on_disk(folder);
+  // Opened without complaint above, so the text is JSON; these keys are there where somebody wrote
+  // them.
+  const auto json = ordered_json::parse(read_text(folder / (raw ? "btf.json" : "codec.json")));
+  for (const char* key : {"parameters", "noise", "provenance"}) {
+    if (json.contains(key)) measured[key] = json[key];
+  }
+  print(measured, session, "");
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Session& session) {
+  const auto folder = std::make_shared<fs::path>();
+  CLI::App* command = app.add_subcommand("info", "Tells what a dataset is");
+  command->add_option("dataset", *folder, "Dataset folder, raw or compressed")->required();
+  command->callback([folder, &session] { info(*folder, session); });
+}
 
 }  // namespace weft::cli

@@ -7,6 +7,7 @@
 #include <exception>
 #include <new>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "btf/error.h"
@@ -20,10 +21,28 @@ void Session::say(const std::string& line) const {
 
 namespace {
 
+/// One sentence for a command line that cannot be understood; lists the subcommands where none was
+/// chosen.
+std::string explain(const CLI::App* app, const CLI::Error& error) {
+  const auto chosen = app->get_subcommands();
+  if (!chosen.empty()) {
+    return fmt::format("weft: {} (weft {} --help)\n", error.what(), chosen[0]->get_name());
+  }
+  std::string names;
+  for (const CLI::App* each : app->get_subcommands([](const CLI::App*) { return true; })) {
+    names += (names.empty() ? "" : ", ") + each->get_name();
+  }
+  const auto rest = app->remaining();
+  const std::string what =
+      rest.empty() ? error.what() : fmt::format("there is no subcommand '{}'", rest[0]);
+  return fmt::format("weft: {} (subcommands: {})\n", what, names);
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Makes, compresses, renders and judges bidirectional texture functions."};
   app.require_subcommand(1);
   app.fallthrough();
+  app.failure_message(explain);
   Session session;
   app.add_flag("--json", session.json, "Print one JSON object of what was measured");
   app.add_flag("--quiet", session.quiet, "Print nothing but errors");

@@ -3,16 +3,6 @@
 # Labels: the folder's name; `slow` for the tag [slow] (left out of `./weft test`, run with --all); `heavy` for
 # [heavy] (a few seconds in a release build: left out of the quick runs under a sanitizer).
 
-set(WEFT_TEST_ENVIRONMENT "")
-if(WEFT_SANITIZE)
-  set(suppressions ${PROJECT_SOURCE_DIR}/tests/sanitizers)
-  set(WEFT_TEST_ENVIRONMENT
-    "ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1"
-    "LSAN_OPTIONS=suppressions=${suppressions}/lsan.supp:print_suppressions=0"
-    "UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1"
-    "TSAN_OPTIONS=suppressions=${suppressions}/tsan.supp:halt_on_error=1:ignore_noninstrumented_modules=1")
-endif()
-
 function(weft_tests folder)
   cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
@@ -23,7 +13,7 @@ function(weft_tests folder)
   target_include_directories(test_${folder} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(test_${folder} PRIVATE WEFT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_precompile_headers(test_${folder} PRIVATE <catch2/catch.hpp>)
-  target_link_libraries(test_${folder} PRIVATE ${arg_LINK} Catch2::Catch2WithMain weft_compiler)
+  target_link_libraries(test_${folder} PRIVATE ${arg_LINK} Catch2::Catch2WithMain weft_program)
 
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${folder}_tests.cmake)
   set(script ${PROJECT_SOURCE_DIR}/cmake/ListCatchTests.cmake)

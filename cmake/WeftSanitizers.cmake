@@ -1,0 +1,20 @@
+# weft_program: what every executable of ours links; under thread sanitizer also the order of TBB's tasks.
+# WEFT_TEST_ENVIRONMENT: what tests run with under a sanitizer.
+
+add_library(weft_program INTERFACE)
+target_link_libraries(weft_program INTERFACE weft_compiler)
+if(WEFT_SANITIZE MATCHES "thread")
+  add_library(weft_tbb_order OBJECT ${PROJECT_SOURCE_DIR}/tests/sanitizers/tbb_order.cpp)
+  target_link_libraries(weft_tbb_order PRIVATE weft_compiler TBB::tbb)
+  target_sources(weft_program INTERFACE $<TARGET_OBJECTS:weft_tbb_order>)
+endif()
+
+set(WEFT_TEST_ENVIRONMENT "")
+if(WEFT_SANITIZE)
+  set(suppressions ${PROJECT_SOURCE_DIR}/tests/sanitizers)
+  set(WEFT_TEST_ENVIRONMENT
+    "ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1"
+    "LSAN_OPTIONS=suppressions=${suppressions}/lsan.supp:print_suppressions=0"
+    "UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1"
+    "TSAN_OPTIONS=suppressions=${suppressions}/tsan.supp:halt_on_error=1")
+endif()

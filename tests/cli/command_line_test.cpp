@@ -1,0 +1,70 @@
+// The command line itself: help, names that do not exist, JSON.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.h"
+#include "tests/cli/small_dataset.h"
+#include "tests/temporary_folder.h"
+
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::vector<std::string> subcommands = {"acquire",  "compress", "render", "preview",
+                                              "extract",  "compare",  "info",   "list",
+                                              "validate", "demo"};
+
+}  // namespace
+
+TEST_CASE("The program's help names every subcommand, and each has its own") {
+  const TemporaryFolder folder;
+  const Outcome all = run_weft({"--help"}, folder.path);
+  CHECK(all.exit_code == 0);
+  for (const std::string& name : subcommands) {
+    INFO(name);
+    CHECK_THAT(all.out, Contains(name));
+    const Outcome one = run_weft({name, "--help"}, folder.path);
+    CHECK(one.exit_code == 0);
+    CHECK_THAT(one.out, Contains("Usage:") && Contains(name) && Contains("--help"));
+  }
+}
+
+TEST_CASE("A subcommand that does not exist is answered with those that do") {
+  const TemporaryFolder folder;
+  const Outcome mistyped = run_weft({"extrakt"}, folder.path);
+  CHECK_THAT(mistyped.err, Contains("extrakt"));
+  const Outcome missing = run_weft({}, folder.path);
+  for (const Outcome& outcome : {mistyped, missing}) {
+    CHECK(outcome.exit_code == 2);
+    for (const std::string& name : subcommands) CHECK_THAT(outcome.err, Contains(name));
+  }
+}
+
+TEST_CASE("--json prints one JSON object and nothing else") {
+  const TemporaryFolder folder;
+  write_small_dataset(folder.path / "small.btf");
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"info", "small.btf", "--json"},
+           {"validate", "small.btf", "--json"},
+           {"list", "codecs", "--json"},
+           {"list", "mesostructures", "--json"},
+           {"extract", "small.btf", "--view", "0,0", "--light", "30,40", "-o", "a.exr", "--json"},
+           {"compress", "small.btf", "--codec", "cmf", "-o", "small.cmf", "--json"},
+           {"info", "small.cmf", "--json"}}) {
+    INFO(arguments[0] << " " << arguments[1]);
+    const Outcome outcome = run_weft(arguments, folder.path);
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.err.empty());
+    CHECK(nlohmann::json::parse(outcome.out, nullptr, false).is_object());
+  }
+}
+
+TEST_CASE("--quiet prints nothing") {
+  const TemporaryFolder folder;
+  write_small_dataset(folder.path / "small.btf");
+  const Outcome outcome = run_weft({"info", "small.btf", "--quiet"}, folder.path);
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.out.empty());
+  CHECK(outcome.err.empty());
+}

@@ -1,0 +1,131 @@
+// info, extract and validate on a dataset whose values are known, and on what damage does to it.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "images/image_file.h"
+#include "tests/cli/program.h"
+#include "tests/cli/small_dataset.h"
+#include "tests/temporary_folder.h"
+
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Dataset {
+  TemporaryFolder folder;
+  Dataset() { write_small_dataset(folder.path / "small.btf"); }
+  Outcome run(const std::vector<std::string>& arguments) const {
+    return run_weft(arguments, folder.path);
+  }
+  nlohmann::json json(std::vector<std::string> arguments) const {
+    arguments.push_back("--json");
+    return nlohmann::json::parse(run(arguments).out);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("info tells the sizes of a raw and of a compressed dataset") {
+  const Dataset dataset;
+  const auto raw = dataset.json({"info", "small.btf"});
+  CHECK(raw["codec"] == "raw");
+  CHECK(raw["texels"] == nlohmann::json::array({4, 2}));
+  CHECK(raw["views"]["count"] == 7);
+  CHECK(raw["lights"]["largest_theta"].get<double>() == Approx(50).margin(1e-4));
+  CHECK(raw["bytes"] == 4 * 2 * 7 * 7 * 3 * sizeof(float));
+
+  REQUIRE(dataset.run({"compress", "small.btf", "--codec", "cmf", "-o", "small.cmf"}).exit_code ==
+          0);
+  const auto compressed = dataset.json({"info", "small.cmf"});
+  CHECK(compressed["codec"] == "cmf");
+  CHECK(compressed["texels"] == raw["texels"]);
+  CHECK(compressed["ratio"].get<double>() ==
+        Approx(3.0 * 4 * 2 * 7 * 7 / compressed["bytes"].get<double>()));
+  CHECK(compressed.contains("parameters"));
+}
+
+TEST_CASE("extract writes the values of one view and one light, +y up") {
+  const Dataset dataset;
+  const auto told =
+      dataset.json({"extract", "small.btf", "--view", "20,100", "--light", "40,15", "-o", "a.exr"});
+  CHECK(told["size"] == nlohmann::json::array({4, 2}));
+  const weft::Image image = weft::read_image(dataset.folder.path / "a.exr", weft::Encoding::linear);
+  REQUIRE(image.width == 4);
+  REQUIRE(image.height == 2);
+  const double cosine = std::cos(40 * std::numbers::pi / 180);
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      const double albedo = 0.1 * ((1 - y) * 4 + x + 1);
+      CHECK(image.rgb(x, y).y == Approx(albedo / std::numbers::pi * cosine).epsilon(1e-3));
+    }
+  }
+  CHECK(dataset.json({"extract", "small.btf", "--view", "0,0", "--light", "0,0", "-o", "b.png",
+                      "--size", "16x8"})["size"] == nlohmann::json::array({16, 8}));
+  CHECK(fs::exists(dataset.folder.path / "b.png"));
+}
+
+TEST_CASE("extract refuses what it cannot do, and leaves no picture") {
+  const Dataset dataset;
+  for (const auto& [bad, word] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--view", "90,0", "--light", "0,0"}, "--view"},
+           {{"--view", "0,0", "--light", "-5,0"}, "--light"},
+           {{"--view", "0,0", "--light", "nan,0"}, "--light"},
+           {{"--view", "0,0", "--light", "0,0", "--size", "64"}, "--size"},
+           {{"--view", "0,0", "--light", "0,0", "--size", "0x4"}, "--size"},
+           {{"--view", "0", "--light", "0,0"}, "--view"}}) {
+    std::vector<std::string> arguments = {"extract", "small.btf", "-o", "c.exr"};
+    arguments.insert(arguments.end(), bad.begin(), bad.end());
+    const Outcome outcome = dataset.run(arguments);
+    INFO(outcome.err);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains(word));
+    CHECK(!fs::exists(dataset.folder.path / "c.exr"));
+  }
+}
+
+TEST_CASE("validate finds nothing in a whole dataset") {
+  const Dataset dataset;
+  REQUIRE(dataset.run({"compress", "small.btf", "--codec", "cmf", "-o", "small.cmf"}).exit_code ==
+          0);
+  for (const char* name : {"small.btf", "small.cmf"}) {
+    const auto told = dataset.json({"validate", name});
+    CHECK(told["findings"].empty());
+    CHECK(told["values_decoded"] == 4 * 2 * 7 * 7);
+    CHECK(dataset.run({"validate", name}).exit_code == 0);
+  }
+}
+
+TEST_CASE("validate ends with 3 and names the file that was damaged") {
+  const Dataset dataset;
+  const fs::path view = dataset.folder.path / "small.btf" / "view_003.exr";
+  SECTION("one byte") {
+    std::fstream file(view, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(-1, std::ios::end);
+    const char last = static_cast<char>(file.get());
+    file.seekp(-1, std::ios::end);
+    file.put(static_cast<char>(last ^ 1));
+  }
+  SECTION("truncated") {
+    fs::resize_file(view, fs::file_size(view) / 2);
+  }
+  SECTION("removed") {
+    fs::remove(view);
+  }
+  const Outcome outcome = dataset.run({"validate", "small.btf"});
+  CHECK(outcome.exit_code == 3);
+  CHECK_THAT(outcome.err, Contains("view_003.exr"));
+}
+
+TEST_CASE("validate ends with 3 where the JSON is half a file") {
+  const Dataset dataset;
+  const fs::path json = dataset.folder.path / "small.btf" / "btf.json";
+  fs::resize_file(json, fs::file_size(json) / 2);
+  const Outcome outcome = dataset.run({"validate", "small.btf"});
+  CHECK(outcome.exit_code == 3);
+  CHECK_THAT(outcome.err, Contains("btf.json"));
+  CHECK(dataset.run({"validate", "nothing.btf"}).exit_code == 2);
+}
