@@ -1,9 +1,162 @@
-// weft acquire: not here yet.
+// weft acquire: traces a mesostructure's BTF into a dataset.
+#include <fmt/core.h>
+#include <unistd.h>
 
+#include <charconv>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "acquisition/acquire.h"
+#include "btf/atomic_file.h"
+#include "btf/error.h"
 #include "cli/command.h"
 
 namespace weft::cli {
 
-void add_acquire(CLI::App& /*app*/, Session& /*session*/) {}
+namespace {
+
+struct Options {
+  std::string mesostructure;
+  std::string output;
+  std::string texels = "64";
+  std::string directions = "ubo81";
+  std::string views;
+  std::string lights;
+  int spp = 64;
+  std::string max_bounces = "8";
+  std::string pixel = "half";
+  std::vector<std::string> set;
+};
+
+int whole_number(const std::string& option, const std::string& text, int least, int most) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < least || value > most) {
+    throw bad_input(
+        option, fmt::format("is \"{}\"; expected a whole number from {} to {}", text, least, most));
+  }
+  return value;
+}
+
+AcquisitionSettings settings_of(const Options& options, const Session& session) {
+  constexpr int most_texels = 16384;
+  AcquisitionSettings settings;
+  const std::size_t x = options.texels.find('x');
+  settings.trace.width = whole_number("--texels", options.texels.substr(0, x), 1, most_texels);
+  settings.trace.height =
+      x == std::string::npos
+          ? settings.trace.width
+          : whole_number("--texels", options.texels.substr(x + 1), 1, most_texels);
+  if (options.spp < 1)
+    throw bad_input("--spp", fmt::format("is {}; expected at least 1", options.spp));
+  settings.trace.spp = options.spp;
+  settings.trace.max_bounces =
+      options.max_bounces == "unlimited"
+          ? TraceSettings::unlimited
+          : whole_number("--max-bounces", options.max_bounces, 0, 1'000'000);
+  settings.trace.seed = session.seed;
+  settings.views = options.views.empty() ? options.directions : options.views;
+  settings.lights = options.lights.empty() ? options.directions : options.lights;
+  settings.pixel_type = options.pixel == "float" ? PixelType::float32 : PixelType::half;
+  return settings;
+}
+
+std::string host_name() {
+  std::string name(256, '\0');
+  if (gethostname(name.data(), name.size() - 1) != 0) return "unknown";
+  return name.c_str();
+}
+
+// What tells how this run went, not what the data are: outside the checksums.
+void write_run(const std::filesystem::path& folder, const Session& session) {
+  nlohmann::ordered_json run = {
+      {"command", session.command_line},
+      {"host", host_name()},
+      {"threads", session.threads > 0 ? session.threads
+                                      : static_cast<int>(std::thread::hardware_concurrency())},
+      {"finished_unix", static_cast<std::int64_t>(std::time(nullptr))},
+      {"measured", session.measured}};
+  write_text_atomically(folder / "run.json", run.dump(1) + "\n");
+}
+
+void report(const AcquisitionReport& result, const AcquisitionSettings& settings,
+            const Options& options, Session& session) {
+  const TraceStatistics& s = result.statistics;
+  const double lights = static_cast<double>(named_directions(settings.lights).size());
+  const double rays_per_second =
+      result.seconds > 0 ? static_cast<double>(s.rays()) / result.seconds : 0;
+  const double samples_per_second =
+      result.seconds > 0 ? static_cast<double>(s.paths) * lights / result.seconds : 0;
+  const double missed =
+      s.paths > 0 ? 100.0 * static_cast<double>(s.missed) / static_cast<double>(s.paths) : 0;
+  session.measured = {{"output", options.output},
+                      {"seconds", result.seconds},
+                      {"views_kept", result.views_kept},
+                      {"paths", s.paths},
+                      {"rays", s.rays()},
+                      {"primary_rays", s.primary_rays},
+                      {"bounce_rays", s.bounce_rays},
+                      {"shadow_rays", s.shadow_rays},
+                      {"rays_traced_on", s.rays_traced_on},
+                      {"rays_per_second", rays_per_second},
+                      {"samples_per_second", samples_per_second},
+                      {"missed_percent", missed},
+                      {"degenerate_hits", s.degenerate}};
+  session.say(fmt::format("{}: {:.1f} s, {:.3g} rays/s, {:.3g} samples/s (texel x pair x spp)",
+                          options.output, result.seconds, rays_per_second, samples_per_second));
+  if (result.views_kept > 0)
+    session.say(fmt::format("{} views were there already", result.views_kept));
+  if (missed > 0) session.say(fmt::format("{:.2g} % of rays met nothing: add a floor", missed));
+  if (s.degenerate > 0) {
+    session.say(fmt::format("{} paths ended on triangles without an area", s.degenerate));
+  }
+}
+
+void run(const Options& options, Session& session) {
+  const AcquisitionSettings settings = settings_of(options, session);
+  const Mesostructure mesostructure = read_mesostructure(options.mesostructure, options.set);
+  Progress progress("acquire", session.quiet || session.json);
+  const AcquisitionReport result = acquire(mesostructure, settings, options.output, progress);
+  report(result, settings, options, session);
+  write_run(options.output, session);
+}
+
+}  // namespace
+
+void add_acquire(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "acquire",
+      "Trace a mesostructure into a raw BTF. An interrupted run continues where it stopped.");
+  command->add_option("mesostructure", options->mesostructure, "Mesostructure file (TOML)")
+      ->required();
+  command->add_option("-o,--output", options->output, "Folder of the dataset, NAME.btf")
+      ->required();
+  command->add_option("--texels", options->texels, "Texels of the tile: N or WxH")
+      ->capture_default_str();
+  command
+      ->add_option("--directions", options->directions,
+                   "Views and lights: ubo81, ubo151, regular:THETAxPHI, fibonacci:N, file:NAME.csv "
+                   "(degrees)")
+      ->capture_default_str();
+  command->add_option("--views", options->views, "Views alone, the same names");
+  command->add_option("--lights", options->lights, "Lights alone, the same names");
+  command->add_option("--spp", options->spp, "Eye paths a view and texel; each serves every light")
+      ->capture_default_str();
+  command
+      ->add_option("--max-bounces", options->max_bounces,
+                   "Reflections after the first: 0 is direct light; or unlimited")
+      ->capture_default_str();
+  command->add_option("--pixel", options->pixel, "half or float")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"half", "float"}));
+  command->add_option("--set", options->set,
+                      "KEY=VALUE overrides a key of the mesostructure, by its dotted path");
+  command->callback([options, &session] { run(*options, session); });
+}
 
 }  // namespace weft::cli

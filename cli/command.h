@@ -15,6 +15,7 @@ struct Session {
   bool quiet = false;
   int threads = 0;  ///< 0: all cores
   std::uint64_t seed = 0;
+  std::string command_line;  ///< as it was typed, for records of a run
   /// What the command measured; printed as one object with `--json`.
   nlohmann::ordered_json measured = nlohmann::ordered_json::object();
   int exit_code = ok;

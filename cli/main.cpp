@@ -44,6 +44,7 @@ int run(int argc, char** argv) {
   app.fallthrough();
   app.failure_message(explain);
   Session session;
+  for (int i = 0; i < argc; ++i) session.command_line += (i > 0 ? " " : "") + std::string(argv[i]);
   app.add_flag("--json", session.json, "Print one JSON object of what was measured");
   app.add_flag("--quiet", session.quiet, "Print nothing but errors");
   app.add_option("--threads", session.threads, "Threads; 0: all cores")

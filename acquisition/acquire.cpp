@@ -1,0 +1,99 @@
+#include "acquisition/acquire.h"
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "btf/btf_file.h"
+
+namespace weft {
+
+namespace {
+
+BtfHeader header_of(const Mesostructure& mesostructure, const AcquisitionSettings& settings) {
+  return {.width = settings.trace.width,
+          .height = settings.trace.height,
+          .views = HemisphereSampling(named_directions(settings.views)),
+          .lights = HemisphereSampling(named_directions(settings.lights)),
+          .pixel_type = settings.pixel_type,
+          .tile_size = mesostructure.tile_size,
+          .provenance = provenance_of(mesostructure, settings),
+          .standard_errors = {}};
+}
+
+ViewTracer tracer_for(const Mesostructure& mesostructure, const AcquisitionSettings& settings,
+                      const HemisphereSampling& lights) {
+  return {mesostructure, {lights.directions().begin(), lights.directions().end()}, settings.trace};
+}
+
+}  // namespace
+
+std::string provenance_of(const Mesostructure& mesostructure, const AcquisitionSettings& settings) {
+  nlohmann::json json = {{"mesostructure", nlohmann::json::parse(mesostructure.settings)},
+                         {"texels", {settings.trace.width, settings.trace.height}},
+                         {"spp", settings.trace.spp},
+                         {"seed", settings.trace.seed},
+                         {"views", settings.views},
+                         {"lights", settings.lights}};
+  if (settings.trace.max_bounces == TraceSettings::unlimited)
+    json["max_bounces"] = "unlimited";
+  else
+    json["max_bounces"] = settings.trace.max_bounces;
+  return json.dump();
+}
+
+AcquisitionReport acquire(const Mesostructure& mesostructure, const AcquisitionSettings& settings,
+                          const std::filesystem::path& folder, Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  const BtfHeader header = header_of(mesostructure, settings);
+  check_elevations(header.views.directions(), "view");
+  const ViewTracer tracer = tracer_for(mesostructure, settings, header.lights);
+  BtfWriter writer(folder, header);
+  std::vector<std::size_t> missing;
+  for (std::size_t v = 0; v < header.views.size(); ++v) {
+    if (!writer.has_view(v)) missing.push_back(v);
+  }
+  AcquisitionReport report;
+  report.views_kept = header.views.size() - missing.size();
+  std::mutex mutex;
+  progress.start(static_cast<std::int64_t>(missing.size()), "views");
+  // Views side by side, so that one is written while another is traced.
+  tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+    const std::size_t v = missing[i];
+    const TracedView view = tracer.trace(header.views[v], v);
+    writer.write_view(v, view.values, view.standard_errors);
+    progress.advance(1);
+    const std::scoped_lock lock(mutex);
+    report.statistics += view.statistics;
+  });
+  writer.finish();
+  progress.finish();
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+Btf acquire(const Mesostructure& mesostructure, const AcquisitionSettings& settings) {
+  const BtfHeader header = header_of(mesostructure, settings);
+  check_elevations(header.views.directions(), "view");
+  const ViewTracer tracer = tracer_for(mesostructure, settings, header.lights);
+  Btf btf(header.width, header.height, header.views, header.lights, header.pixel_type);
+  btf.tile_size = header.tile_size;
+  btf.provenance = header.provenance;
+  for (std::size_t v = 0; v < header.views.size(); ++v) {
+    const TracedView view = tracer.trace(header.views[v], v);
+    std::size_t i = 0;
+    for (std::size_t l = 0; l < header.lights.size(); ++l) {
+      for (int y = 0; y < header.height; ++y) {
+        for (int x = 0; x < header.width; ++x, i += 3) {
+          btf.set(l, v, x, y, Rgb(view.values[i], view.values[i + 1], view.values[i + 2]));
+        }
+      }
+    }
+  }
+  return btf;
+}
+
+}  // namespace weft

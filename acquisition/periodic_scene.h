@@ -1,0 +1,51 @@
+// A tile's triangles repeated without end in x and y, for rays.
+//
+// A few copies around the central tile are real and serve nearly all rays; a ray that leaves them
+// below the top is moved back by whole tiles and goes on, so that the answer is that of the endless
+// structure.
+#pragma once
+
+#include <cstdint>
+
+#include "tracer/ray_scene.h"
+#include "tracer/triangle_mesh.h"
+
+namespace weft {
+
+class PeriodicScene {
+ public:
+  /// @param tile  in tile units: repeats with period 1 in x and y; may stick out of [0, 1]^2.
+  /// @throws Error  where it has no triangles, a position is not finite, or it is over 100 tiles
+  /// wide.
+  explicit PeriodicScene(const TriangleMesh& tile);
+
+  float bottom() const { return bottom_; }
+  float top() const { return top_; }
+
+  /// Nearest hits of the first `count` rays, whose origins have x, y in [0, 1] and whose tnear is
+  /// 0; tfar is set here. `primitive`, `u`, `v` name the hit on the tile's own triangle; mesh is
+  /// RayHit::none for a miss.
+  /// @returns how many single rays were traced on after leaving the copies.
+  std::int64_t intersect(RayStream& rays, std::size_t count, Coherence coherence) const;
+
+  /// The same for occlusion: tfar < 0 afterwards where something is in the way.
+  std::int64_t occluded(RayStream& rays, std::size_t count, Coherence coherence) const;
+
+ private:
+  struct Exit {
+    float distance;
+    bool sideways;
+  };
+  Exit exit(const Vec3& origin, const Vec3& direction) const;
+  void bound(RayStream& rays, std::size_t count) const;
+  std::int64_t trace_on(RayStream& rays, std::size_t i) const;
+
+  float bottom_;
+  float top_;
+  float margin_;  // above the top and below the bottom
+  Vec2 low_;      // the copies are complete between these two corners
+  Vec2 high_;
+  RayScene scene_;
+};
+
+}  // namespace weft

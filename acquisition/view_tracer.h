@@ -1,0 +1,77 @@
+// The virtual gonioreflectometer: one view of a mesostructure under every light at once.
+//
+// A path from the eye does not depend on the light, so each path is traced once a (texel, sample)
+// and every vertex is connected to every light. The estimate of one pair is unbiased; the noise of
+// one view's lights is correlated.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "acquisition/mesostructure.h"
+#include "acquisition/periodic_scene.h"
+
+namespace weft {
+
+struct TraceSettings {
+  static constexpr int unlimited = std::numeric_limits<int>::max();
+
+  int width = 64;  ///< texels
+  int height = 64;
+  int spp = 64;         ///< eye paths a (view, texel)
+  int max_bounces = 8;  ///< reflections after the first; 0 is direct light
+  std::uint64_t seed = 0;
+};
+
+/// What tracing cost, and what it met.
+struct TraceStatistics {
+  std::int64_t paths = 0;
+  std::int64_t primary_rays = 0;
+  std::int64_t bounce_rays = 0;
+  std::int64_t shadow_rays = 0;
+  std::int64_t rays_traced_on = 0;  ///< single rays for what left the copies of the tile
+  std::int64_t missed = 0;          ///< paths whose first ray met nothing
+  std::int64_t degenerate = 0;      ///< hits on triangles without an area, where a path ends
+
+  std::int64_t rays() const { return primary_rays + bounce_rays + shadow_rays + rays_traced_on; }
+  TraceStatistics& operator+=(const TraceStatistics& other);
+};
+
+struct TracedView {
+  std::vector<float> values;  ///< [light][y][x][rgb], B in 1/sr
+  /// Standard error of each light's tile mean (mean of RGB), from the spread of groups of samples;
+  /// conservative, as stratification between groups is not credited. Empty with fewer than two
+  /// samples.
+  std::vector<float> standard_errors;
+  TraceStatistics statistics;
+};
+
+class ViewTracer {
+ public:
+  /// @param lights  unit vectors, at most 89.9 degrees from the normal. @throws Error naming one
+  /// that is not.
+  ViewTracer(Mesostructure mesostructure, std::vector<Direction> lights, TraceSettings settings);
+
+  /// Traces one view with all of TBB's threads. `view_key` names the view in the random numbers.
+  /// The same bytes for any number of threads. @throws Error  for a view below 89.9 degrees.
+  TracedView trace(const Direction& view, std::uint64_t view_key) const;
+
+  const std::vector<Direction>& lights() const { return lights_; }
+  const TraceSettings& settings() const { return settings_; }
+  const Mesostructure& mesostructure() const { return mesostructure_; }
+
+ private:
+  class Block;
+
+  Mesostructure mesostructure_;
+  std::vector<Direction> lights_;
+  TraceSettings settings_;
+  PeriodicScene scene_;
+};
+
+/// @throws Error  where a direction is more than 89.9 degrees from the normal; `role` is "light" or
+/// "view".
+void check_elevations(std::span<const Direction> directions, const std::string& role);
+
+}  // namespace weft
