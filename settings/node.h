@@ -20,7 +20,7 @@ struct Settings::Node {
   std::optional<toml::table>
       made;                     ///< the table where the file has none and defaults were filled in
   std::set<std::string> asked;  ///< keys that somebody knows
-  std::set<std::string> path_keys;                        ///< keys that hold paths
+  std::map<std::string, std::filesystem::path> paths;     ///< answers of `path`, by key
   std::map<std::string, std::shared_ptr<Node>> children;  ///< by key, or "key.index"
 
   std::string full(const std::string& key) const { return path.empty() ? key : path + "." + key; }

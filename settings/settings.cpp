@@ -7,30 +7,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <system_error>
 
+#include "btf/atomic_file.h"
 #include "settings/nearest_name.h"
 #include "settings/node.h"
 
 namespace weft {
 
 namespace {
-
-std::string read_text(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path))
-    throw bad_input(path.string(), "is a folder, not a file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw bad_input(path.string(), "cannot be opened: " +
-                                       std::error_code(errno, std::generic_category()).message());
-  }
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 std::string place(const Document& document, const toml::source_region& source) {
   if (source.begin.line == 0) return document.name;
@@ -239,9 +225,11 @@ std::string Settings::canonical_json() const {
         for (std::size_t i = 0; i < value.as_array()->size(); ++i) {
           object[name].push_back(self(self, *node.children.at(fmt::format("{}.{}", name, i))));
         }
-      } else if (node.path_keys.contains(name)) {
-        object[name] =
-            std::filesystem::path(*value.template value<std::string>()).filename().string();
+      } else if (const auto path = node.paths.find(name); path != node.paths.end()) {
+        object[name] = path->second.filename().string();
+        if (std::filesystem::is_regular_file(path->second)) {
+          object[name + ".xxh3_128"] = file_checksum(path->second);
+        }
       } else {
         object[name] = json_of(value, node.where(name));
       }

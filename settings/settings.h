@@ -68,14 +68,14 @@ class Settings {
   /// "file:line:column" of a key, or of this table for an empty key.
   std::string where(const std::string& key = {}) const;
 
-  /// @throws Error  for the first key, here or in sub-tables, that nobody asked for: its line, and
-  /// the names that
-  ///                were asked for there, and the nearest one. Where an override changed a table's
-  ///                `type`, what the file says for the type that it had is left aside instead.
+  /// @throws Error  for the first key, here or in sub-tables, that nobody asked for: its line, the
+  ///                nearest name and all that were asked for there. Where an override changed a
+  ///                table's `type`, what the file says for the type that it had is left aside.
   void finish() const;
 
   /// All keys and values as canonical JSON text (sorted keys, shortest numbers), sub-tables
-  /// included. Of paths only the file name, so that it does not depend on where things lie.
+  /// included. Of a file only its
+  /// name and checksum, so that the text depends on what it holds and not on where it lies.
   std::string canonical_json() const;
 
  private:

@@ -154,9 +154,8 @@ Rgb Settings::rgb(const std::string& key, const Rgb& fallback) const {
 std::filesystem::path Settings::path(const std::string& key) const {
   const std::filesystem::path value = text(key);
   if (value.empty()) throw bad_input(where(key), fmt::format("'{}' is empty", node_->full(key)));
-  node_->path_keys.insert(key);
   const bool from_command_line = !node_->document->override_of(node_->full(key)).empty();
-  return from_command_line ? value : node_->document->folder / value;
+  return node_->paths[key] = from_command_line ? value : node_->document->folder / value;
 }
 
 }  // namespace weft

@@ -178,7 +178,9 @@ std::string trimmed(std::string_view name) {
   return std::string(end == std::string_view::npos ? "" : name.substr(begin, end - begin + 1));
 }
 
-ObjReader& reader(void* user) { return *static_cast<ObjReader*>(user); }
+ObjReader& reader(void* user) {
+  return *static_cast<ObjReader*>(user);
+}
 
 tinyobj::callback_t callbacks() {
   tinyobj::callback_t calls;

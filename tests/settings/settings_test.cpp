@@ -86,7 +86,7 @@ TEST_CASE("half a file is a syntax error with line and column") {
   CHECK_THAT(message([] { toml("a = 1\na = 2\n"); }), StartsWith("brick.toml:2:"));
   CHECK_THAT(message([] { Settings::from_file("/nowhere/at_all.toml"); }),
              Contains("/nowhere/at_all.toml") && Contains("No such file"));
-  CHECK_THAT(message([] { Settings::from_file("/tmp"); }), Contains("is a folder"));
+  CHECK_THAT(message([] { Settings::from_file("/tmp"); }), Contains("not a file"));
 }
 
 TEST_CASE("wrong types and ranges are refused") {
@@ -189,6 +189,13 @@ TEST_CASE("paths are relative to the file they stand in") {
   const Settings s = Settings::from_file(folder.path / "a.toml");
   CHECK(s.path("file") == folder.path / "b.obj");
   CHECK(s.path("whole") == "/x/y");
+
+  std::ofstream(folder.path / "b.obj") << "v 0 0 0\n";
+  const std::string before = s.canonical_json();
+  CHECK_THAT(before,
+             Contains("\"file\":\"b.obj\",\"file.xxh3_128\":\"") && Contains("\"whole\":\"y\""));
+  std::ofstream(folder.path / "b.obj") << "v 0 0 1\n";
+  CHECK(s.canonical_json() != before);
 }
 
 TEST_CASE("the nearest name is found, and none where nothing is near") {
