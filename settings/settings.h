@@ -3,7 +3,7 @@
 //
 // Each key that is asked for is marked; `finish()` then refuses what nobody asked for, naming its
 // line and the names that are valid there. A value of another type than asked for is an error with
-// its line.
+// its line; NaN and infinity are no numbers here. Not for use from several threads at once.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,8 @@ class Settings {
  public:
   /// No keys at all: every question is answered by its default.
   Settings();
-  /// @param overrides  "a.b.c=VALUE" pairs; VALUE is TOML, or a bare word that is taken as a
-  /// string.
-  ///                   `a.0.b` names element 0 of an array of tables.
+  /// @param overrides  "a.b.c=VALUE" pairs, the last of equals wins; VALUE is TOML, or a bare word
+  ///                   that is taken as a string. `a.0.b` names element 0 of an array of tables.
   /// @throws Error     with file:line:column for a syntax error.
   static Settings from_file(const std::filesystem::path& path,
                             const std::vector<std::string>& overrides = {});
