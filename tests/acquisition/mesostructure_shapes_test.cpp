@@ -172,7 +172,7 @@ TEST_CASE("checker normals are those of its formula") {
 }
 
 TEST_CASE("the rings are tori on a plane, as in the reference") {
-  const Mesostructure m = read("rings", {"smooth=false"});
+  const Mesostructure m = read("rings", {"smooth=false", "segments=1024", "minor_segments=128"});
   CHECK(m.reference_height == 0.06F);
   REQUIRE(m.mesh.triangles.size() == 2 + 4 * 2 * 1024 * 128);
   double worst = 0;
