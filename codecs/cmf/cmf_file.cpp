@@ -79,7 +79,7 @@ const Json& entry_named(const Json& arrays, const std::string& name) {
   for (const Json& entry : arrays) {
     if (entry.at("name") == name) return entry;
   }
-  throw bad_input("arrays", fmt::format("has no '{}'", name));
+  throw bad_input("arrays", fmt::format("there is no '{}'", name));
 }
 
 RgbArray read_array(const fs::path& folder, const Json& entry, int width, int height) {
@@ -197,6 +197,9 @@ Model read_model(const fs::path& folder) {
     return model_from(folder, json);
   } catch (const nlohmann::json::exception& error) {
     throw bad_input(where, error.what(), "a field is missing or of another type");
+  } catch (const Error& error) {
+    if (error.where().starts_with(folder.string())) throw;
+    throw bad_input(where, error.what());  // a field's
   }
 }
 

@@ -25,6 +25,9 @@ class SampleMap {
   const std::vector<BilinearTaps>& taps() const { return taps_; }
 
  private:
+  LaneVector errors(const LaneVector& samples, const LaneVector& map) const;
+  void correct(const LaneVector& error, LaneVector& map) const;
+
   std::vector<Stencil> stencils_;   // per texel
   std::vector<BilinearTaps> taps_;  // per sample
   Eigen::MatrixXf inverse_;         // (B B^T + eps I)^-1
