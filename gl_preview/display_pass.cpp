@@ -12,10 +12,6 @@ namespace weft {
 
 namespace {
 
-constexpr const char* triangle = R"(#version 450 core
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }
-)";
-
 constexpr const char* exposure_source = R"(#version 450 core
 layout(binding = 0) uniform sampler2D picture;
 layout(location = 0) uniform float gain;
@@ -62,13 +58,17 @@ void main() { colour = vec4(viridis(gl_FragCoord.x / width), 1.0); }
 
 DisplayPass::DisplayPass()
     : no_attributes_(GlVertexArray::make()),
-      exposure_(link_graphics_program("exposure pass", triangle, exposure_source)),
-      error_(link_graphics_program("error map", triangle, std::string(scale_source) + error_main)),
-      legend_(link_graphics_program("legend", triangle, std::string(scale_source) + legend_main)) {}
+      exposure_(
+          link_graphics_program("exposure pass", full_screen_vertex_shader(), exposure_source)),
+      error_(link_graphics_program("error map", full_screen_vertex_shader(),
+                                   std::string(scale_source) + error_main)),
+      legend_(link_graphics_program("legend", full_screen_vertex_shader(),
+                                    std::string(scale_source) + legend_main)) {}
 
 void DisplayPass::draw(const GlLinkedProgram& program, const RenderTarget& target) const {
   target.bind();
   glDisable(GL_DEPTH_TEST);
+  glDisable(GL_STENCIL_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
   glBindVertexArray(no_attributes_.name());

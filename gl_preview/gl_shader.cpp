@@ -64,4 +64,12 @@ GlLinkedProgram link_compute_program(const std::string& name, const std::string&
   return link(name, compile<GL_COMPUTE_SHADER>(name, compute));
 }
 
+std::string full_screen_vertex_shader() {
+  return R"(#version 450 core
+void main() {
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+}
+
 }  // namespace weft

@@ -13,4 +13,7 @@ GlLinkedProgram link_graphics_program(const std::string& name, const std::string
                                       const std::string& fragment);
 GlLinkedProgram link_compute_program(const std::string& name, const std::string& compute);
 
+/// One triangle over the whole picture, at depth 0; draw 3 vertices without attributes.
+std::string full_screen_vertex_shader();
+
 }  // namespace weft

@@ -6,6 +6,7 @@
 
 #include "btf/error.h"
 #include "codecs/representation.h"
+#include "gl_preview/geometry_buffer.h"
 #include "gl_preview/gl_context.h"
 #include "gl_preview/tabulated_material.h"
 
@@ -162,8 +163,8 @@ GpuAppearance::Texture GpuAppearance::upload(const GlTexture& t, const std::stri
 }
 
 GpuAppearance::GpuAppearance(const GlProgram& program, const std::string& name) {
-  refuse_above(static_cast<int>(program.textures.size()), GL_MAX_TEXTURE_IMAGE_UNITS, name,
-               "textures in one program");
+  const int units = static_cast<int>(program.textures.size()) + GeometryBuffer::texture_count;
+  refuse_above(units, GL_MAX_TEXTURE_IMAGE_UNITS, name, "textures in one program");
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   for (const GlTexture& texture : program.textures) {
     source_ += sampler_declaration(texture, textures_.size());

@@ -29,6 +29,8 @@ class GpuAppearance {
   const std::string& source() const { return source_; }
   /// Binds the textures to the units that `source()` names: 0, 1, ...
   void bind() const;
+  /// Number of its textures.
+  std::size_t units() const { return textures_.size(); }
   /// Texture bytes that were uploaded.
   std::size_t bytes() const { return bytes_; }
 

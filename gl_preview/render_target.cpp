@@ -9,31 +9,44 @@
 
 namespace weft {
 
-RenderTarget::RenderTarget(int width, int height, GLenum format, bool with_depth)
-    : width_(width),
-      height_(height),
-      colour_(GlTextureName<GL_TEXTURE_2D>::make()),
-      framebuffer_(GlFramebuffer::make()) {
+namespace {
+
+std::string name_of_picture(int width, int height) {
+  return fmt::format("picture of {} x {}", width, height);
+}
+
+}  // namespace
+
+void check_picture_size(int width, int height) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-  const std::string doing = fmt::format("picture of {} x {}", width, height);
   if (width < 1 || height < 1 || width > most || height > most) {
-    throw failed(doing, fmt::format("this GPU draws 1 to {} pixels a side", most));
+    throw failed(name_of_picture(width, height),
+                 fmt::format("this GPU draws 1 to {} pixels a side", most));
   }
-  glTextureStorage2D(colour_.name(), 1, format, width, height);
-  glTextureParameteri(colour_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTextureParameteri(colour_.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+GlTextureName<GL_TEXTURE_2D> picture_texture(int width, int height, GLenum format) {
+  auto texture = GlTextureName<GL_TEXTURE_2D>::make();
+  glTextureStorage2D(texture.name(), 1, format, width, height);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return texture;
+}
+
+void check_framebuffer(GLuint framebuffer, int width, int height) {
+  check_gl(name_of_picture(width, height));
+  if (glCheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw failed(name_of_picture(width, height), "this GPU cannot draw to such a picture");
+  }
+}
+
+RenderTarget::RenderTarget(int width, int height, GLenum format)
+    : width_(width), height_(height), framebuffer_(GlFramebuffer::make()) {
+  check_picture_size(width, height);
+  colour_ = picture_texture(width, height, format);
   glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, colour_.name(), 0);
-  if (with_depth) {
-    depth_ = GlTextureName<GL_TEXTURE_2D>::make();
-    glTextureStorage2D(depth_.name(), 1, GL_DEPTH_COMPONENT32F, width, height);
-    glNamedFramebufferTexture(framebuffer_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0);
-  }
-  check_gl(doing);
-  if (glCheckNamedFramebufferStatus(framebuffer_.name(), GL_DRAW_FRAMEBUFFER) !=
-      GL_FRAMEBUFFER_COMPLETE) {
-    throw failed(doing, "this GPU cannot draw to such a picture");
-  }
+  check_framebuffer(framebuffer_.name(), width, height);
 }
 
 void RenderTarget::bind() const {

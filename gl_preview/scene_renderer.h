@@ -1,9 +1,10 @@
 // Draws a scene on the GPU into a float picture: the one harness for all codecs, in a window or
 // headless.
 //
-// Every fragment interpolates world position, normal, tangent and texcoord, makes the local frame
-// that the path tracer makes, and sums btf_evaluate(uv, light, view, lod) * E_perp over the lights.
-// No shadows are cast; the background is black.
+// A first pass interpolates world position, normal, tangent and texcoord at every pixel's centre; a
+// second one makes the local frame that the path tracer makes, and sums btf_evaluate(uv, light,
+// view, lod) * E_perp over the lights. So each pixel is shaded once, however small the triangles
+// and however many lie behind each other. No shadows are cast; the background is black.
 #pragma once
 
 #include <cstddef>

@@ -80,7 +80,7 @@ class PreviewApp {
         continuous_(options.frames > 0),
         automatic_lod_(!options.lod),
         fixed_lod_(options.lod.value_or(0)),
-        legend_(256, 1, GL_RGBA8, false) {
+        legend_(256, 1, GL_RGBA8) {
     for (PreviewPane& pane : panes) {
       panes_.push_back({std::move(pane.title), SceneRenderer(pane.scene), {}, {}, 0, 0});
     }
@@ -126,8 +126,8 @@ class PreviewApp {
     if (camera_.width == width && camera_.height == height && drawn_ > 0) return;
     camera_.width = width;
     camera_.height = height;
-    for (Pane& pane : panes_) pane.shown = RenderTarget(width, height, GL_RGBA8, false);
-    error_ = RenderTarget(width, height, GL_RGBA8, false);
+    for (Pane& pane : panes_) pane.shown = RenderTarget(width, height, GL_RGBA8);
+    error_ = RenderTarget(width, height, GL_RGBA8);
     stale_ = true;
   }
 
