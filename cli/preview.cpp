@@ -10,6 +10,7 @@
 #include "btf/error.h"
 #include "cli/btf_option.h"
 #include "cli/command.h"
+#include "cli/lod_option.h"
 #include "gl_preview/headless.h"
 #include "gl_preview/window.h"
 #include "images/image_file.h"
@@ -33,21 +34,6 @@ struct PreviewArguments {
   bool headless = false;
   bool no_shadows = false;
 };
-
-FixedLod parse_lod(const std::string& text) {
-  if (text == "auto") return {};
-  std::size_t used = 0;
-  float value = -1;
-  try {
-    value = std::stof(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used != text.size() || !(value >= 0)) {
-    throw bad_input("--lod", "'" + text + "' is neither `auto` nor a number >= 0");
-  }
-  return value;
-}
 
 /// "WxH" to the camera's size.
 void set_size(Camera& camera, const std::string& text) {

@@ -219,14 +219,14 @@ class PreviewApp {
                                        100 * numbers_.relative)
                                .c_str());
     ImGui::TextUnformatted(fmt::format("largest {:.3g}", numbers_.largest).c_str());
-    ImGui::SetNextItemWidth(120);
+    ImGui::SetNextItemWidth(100);
     bool redisplay =
         ImGui::SliderFloat("full scale", &full, 1e-4F, 10, "%.4f", ImGuiSliderFlags_Logarithmic);
     if (redisplay) full_scale_ = full;
     if (panes_.size() > 2) {
       ImGui::SameLine();
       int chosen = static_cast<int>(compared_);
-      ImGui::SetNextItemWidth(80);
+      ImGui::SetNextItemWidth(50);
       if (ImGui::SliderInt("pane", &chosen, 1, static_cast<int>(panes_.size()) - 1)) {
         compared_ = static_cast<std::size_t>(chosen);
         measure_error();
@@ -251,7 +251,9 @@ class PreviewApp {
       camera_ = dollied(camera_, std::pow(zoom_per_notch, io.MouseWheel));
       stale_ = true;
     }
-    if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) drag(io);
+    // Not in the frame of the click itself: its move came before the button, however far it was.
+    const bool is_held = ImGui::IsItemActive() && !ImGui::IsItemActivated();
+    if (is_held && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) drag(io);
   }
 
   void drag(const ImGuiIO& io) {
