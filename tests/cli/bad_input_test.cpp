@@ -1,0 +1,132 @@
+// What a user may get wrong ends in one sentence that names the place, exit 2, and nothing left
+// behind.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <limits>
+
+#include "images/image_file.h"
+#include "tests/cli/program.h"
+#include "tests/cli/small_dataset.h"
+#include "tests/temporary_folder.h"
+
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+/// A folder with one of every mistake.
+struct Mistakes {
+  TemporaryFolder folder;
+
+  Mistakes() {
+    const fs::path& f = folder.path;
+    write(f / "good.toml", "type = \"checker\"\nresolution = 16\n");
+    write(f / "half.toml", "type = \"checker\"\nheight = ");
+    write(f / "unknown.toml", "type = \"checker\"\nhight = 0.1\n");
+    write(f / "type.toml", "type = \"chequer\"\n");
+    write(f / "nan.toml", "type = \"heightfield\"\nfile = \"nan.exr\"\nheight = 0.1\n");
+    write(f / "truncated.toml", "type = \"heightfield\"\nfile = \"truncated.exr\"\nheight = 0.1\n");
+    write(f / "faceless.toml", "type = \"mesh\"\nfile = \"faceless.obj\"\n");
+    write(f / "fileless.toml", "type = \"mesh\"\nfile = \"nothing.obj\"\n");
+    write(f / "faceless.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\n");
+    write(f / "scene.toml",
+          "camera = { type = \"perspective\", eye = [0, -4, 2], target = [0, 0, 0], up = [0, 0, "
+          "1], fov = 40, "
+          "size = [8, 8] }\n"
+          "shape = [ { type = \"sphere\", material = \"weave\" } ]\n"
+          "light = [ { type = \"point\", position = [2, -2, 4], intensity = [40, 40, 40] } ]\n"
+          "[material.weave]\ntype = \"btf\"\nfile = \"nothing.btf\"\n");
+    weft::Image heights(8, 8, 3);
+    weft::write_image(f / "truncated.exr", heights, weft::Encoding::linear);
+    fs::resize_file(f / "truncated.exr", fs::file_size(f / "truncated.exr") - 40);
+    heights.values[heights.offset(3, 5)] = std::numeric_limits<float>::quiet_NaN();
+    weft::write_image(f / "nan.exr", heights, weft::Encoding::linear);
+    write_small_dataset(f / "small.btf");
+    fs::copy(f / "small.btf", f / "cut.btf");
+    fs::resize_file(f / "cut.btf" / "view_002.exr", 300);
+  }
+
+  /// @param fragments  what the sentence must name.
+  void refused(const std::vector<std::string>& arguments,
+               const std::vector<std::string>& fragments) const {
+    const auto before = files_below(folder.path);
+    const Outcome outcome = run_weft(arguments, folder.path);
+    INFO(arguments[0] << " " << arguments[1] << ": " << outcome.err << outcome.out);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.err.starts_with("weft: "));
+    CHECK(std::ranges::count(outcome.err, '\n') == 1);
+    CHECK(outcome.out.empty());
+    for (const std::string& fragment : fragments) CHECK_THAT(outcome.err, Contains(fragment));
+    CHECK(files_below(folder.path) == before);
+  }
+};
+
+std::vector<std::string> acquire(const std::string& file,
+                                 const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = {"acquire",  file, "-o",           "out.btf",
+                                        "--texels", "4",  "--directions", "regular:1x2"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+}  // namespace
+
+TEST_CASE("acquire refuses bad mesostructures") {
+  const Mistakes mistakes;
+  mistakes.refused(acquire("nothing.toml"), {"nothing.toml"});
+  mistakes.refused(acquire("half.toml"), {"half.toml:2"});
+  mistakes.refused(acquire("unknown.toml"), {"unknown.toml:2", "hight", "height"});
+  mistakes.refused(acquire("type.toml"), {"type.toml:1", "chequer", "checker"});
+  mistakes.refused(acquire("nan.toml"), {"nan.exr", "nan"});
+  mistakes.refused(acquire("truncated.toml"), {"truncated.exr"});
+  mistakes.refused(acquire("faceless.toml"), {"faceless.obj", "face"});
+  mistakes.refused(acquire("fileless.toml"), {"nothing.obj"});
+}
+
+TEST_CASE("acquire refuses bad options") {
+  const Mistakes mistakes;
+  mistakes.refused(acquire("good.toml", {"--spp", "0"}), {"spp", "0"});
+  mistakes.refused(acquire("good.toml", {"--max-bounces", "many"}), {"--max-bounces", "many"});
+  mistakes.refused(acquire("good.toml", {"--views", "ubo18"}), {"ubo18", "ubo81"});
+  mistakes.refused(acquire("good.toml", {"--pixel", "byte"}), {"--pixel", "byte", "half"});
+  mistakes.refused(acquire("good.toml", {"--set", "hight=1"}), {"hight", "height"});
+}
+
+TEST_CASE("compress, info and extract refuse what is not a dataset") {
+  const Mistakes mistakes;
+  mistakes.refused({"info", "nothing.btf"}, {"nothing.btf"});
+  mistakes.refused({"info", "good.toml"}, {"good.toml"});
+  mistakes.refused({"extract", "cut.btf", "--view", "0,0", "--light", "0,0", "-o", "a.exr"},
+                   {"view_002.exr"});
+  mistakes.refused({"compress", "nothing.btf", "-o", "out.cmf"}, {"nothing.btf"});
+  mistakes.refused({"compress", "cut.btf", "-o", "out.cmf"}, {"view_002.exr"});
+  mistakes.refused({"compress", "small.btf", "--codec", "cfm", "-o", "out.cmf"}, {"cfm", "cmf"});
+  mistakes.refused({"compress", "small.btf", "-o", "out.cmf", "--set", "bit=8"}, {"bit", "bits"});
+}
+
+TEST_CASE("render and preview refuse bad scenes") {
+  const Mistakes mistakes;
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"render"}, std::vector<std::string>{"preview", "--headless"}}) {
+    const auto refused = [&](const std::vector<std::string>& more,
+                             const std::vector<std::string>& fragments) {
+      std::vector<std::string> arguments = command;
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      mistakes.refused(arguments, fragments);
+    };
+    refused({"nothing.toml", "-o", "a.exr"}, {"nothing.toml"});
+    refused({"half.toml", "-o", "a.exr"}, {"half.toml:2"});
+    refused({"scene.toml", "-o", "a.exr"}, {"nothing.btf"});
+    refused({"scene.toml", "-o", "a.exr", "--btf", "cut.btf"}, {"view_002.exr"});
+    refused({"scene.toml", "-o", "a.exr", "--btf", "small.btf", "--set", "camera.fof=3"},
+            {"fof", "fov"});
+  }
+  mistakes.refused({"render", "scene.toml", "--btf", "small.btf", "-o", "a.exr", "--spp", "0"},
+                   {"--spp", "0"});
+}
