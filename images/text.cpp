@@ -3,6 +3,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <sstream>
@@ -73,6 +74,13 @@ fs::path search_font() {
                "install the package fonts-dejavu-core, or name a .ttf file in WEFT_FONT");
 }
 
+/// OpenImageIO 2.4 draws other glyphs than meant for what takes more than one byte.
+void refuse_beyond_ascii(const std::string& text) {
+  const bool ascii =
+      std::all_of(text.begin(), text.end(), [](unsigned char c) { return c >= 32 && c < 127; });
+  if (!ascii) throw bad_input("text '" + text + "'", "only ASCII can be drawn into pictures");
+}
+
 OIIO::ImageBufAlgo::TextAlignX align_x(TextAlignment alignment) {
   using OIIO::ImageBufAlgo::TextAlignX;
   switch (alignment) {
@@ -95,6 +103,7 @@ fs::path font_file() {
 
 void draw_text(Image& image, int x, int y, const std::string& text, int size, const Rgb& colour,
                TextAlignment alignment) {
+  refuse_beyond_ascii(text);
   const std::string font = font_file().string();
   OIIO::ImageBuf canvas(
       OIIO::ImageSpec(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT),
@@ -108,6 +117,7 @@ void draw_text(Image& image, int x, int y, const std::string& text, int size, co
 }
 
 int text_width(const std::string& text, int size) {
+  refuse_beyond_ascii(text);
   const std::string font = font_file().string();
   const OIIO::ROI extent = OIIO::ImageBufAlgo::text_size(text, size, font);
   if (!extent.defined()) throw failed("text '" + text + "'", "cannot be measured", "font " + font);

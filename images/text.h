@@ -10,10 +10,11 @@ namespace weft {
 
 enum class TextAlignment { left, centre, right };
 
-/// Draws one line, antialiased, its vertical middle at `y` and its left edge, middle or right edge
-/// at `x`. What falls outside the picture is cut. `size` is the height of an em in pixels; `colour`
-/// is linear.
-/// @throws Error  failed, where no font is found on this machine (see `font_file`).
+/// Draws one line of printable ASCII, antialiased, its vertical middle at `y` and its left edge,
+/// middle or right edge at `x`. What falls outside the picture is cut. `size` is the height of an
+/// em in pixels; `colour` is linear.
+/// @throws Error  failed, where no font is found on this machine (see `font_file`); bad_input for
+/// other characters.
 void draw_text(Image& image, int x, int y, const std::string& text, int size, const Rgb& colour,
                TextAlignment alignment = TextAlignment::left);
 

@@ -61,7 +61,7 @@ Legend legend_of(double top, bool clamped, const std::string& unit) {
   int label_width = 0;
   for (const double tick : legend.ticks) {
     const bool last = tick == top;
-    legend.labels.push_back((last && clamped ? "\u2265 " : "") + fmt::format("{:.3g}", tick));
+    legend.labels.push_back((last && clamped ? ">= " : "") + fmt::format("{:.3g}", tick));
     label_width = std::max(label_width, text_width(legend.labels.back(), font_size));
   }
   legend.width =

@@ -8,10 +8,10 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <random>
 
 #include "btf/error.h"
 #include "images/srgb.h"
+#include "tests/temporary_folder.h"
 
 namespace {
 
@@ -19,20 +19,6 @@ namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 using weft::Encoding;
 using weft::Image;
-
-/// A fresh folder, removed at the end of the test.
-struct Folder {
-  fs::path path =
-      fs::temp_directory_path() / ("weft_images_" + std::to_string(std::random_device{}()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(path), fs::directory_iterator{}));
-  }
-};
 
 Image ramp(int width, int height, int channels) {
   Image image(width, height, channels);
@@ -59,7 +45,7 @@ std::string message_of(const std::function<void()>& call) {
 }  // namespace
 
 TEST_CASE("EXR keeps every float, NaN and infinity too, for 1 to 4 channels") {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (int channels = 1; channels <= 4; ++channels) {
     Image image = ramp(7, 5, channels);
     image.values[0] = std::numeric_limits<float>::quiet_NaN();
@@ -76,7 +62,7 @@ TEST_CASE("EXR keeps every float, NaN and infinity too, for 1 to 4 channels") {
 }
 
 TEST_CASE("Colours under an alpha of zero stay as they are") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Image image(1, 1, 4);
   image.values = {0.2F, 0.4F, 0.6F, 0.0F};
   for (const std::string name : {"a.png", "a.exr", "a.tif"}) {
@@ -87,7 +73,7 @@ TEST_CASE("Colours under an alpha of zero stay as they are") {
 }
 
 TEST_CASE("A linear PNG holds the raw bytes and no colour chunk") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Image image(256, 1, 3);
   for (int x = 0; x < 256; ++x) image.set_rgb(x, 0, weft::Rgb(static_cast<float>(x) / 255.0F));
   weft::write_image(folder.path / "raw.png", image, Encoding::linear);
@@ -100,7 +86,7 @@ TEST_CASE("A linear PNG holds the raw bytes and no colour chunk") {
 }
 
 TEST_CASE("A PNG for people is sRGB-encoded and decodes to what was meant") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Image image(1, 1, 3);
   image.set_rgb(0, 0, weft::Rgb(0.2158605F));  // code value 128 / 255
   weft::write_image(folder.path / "a.png", image, Encoding::colour);
@@ -111,7 +97,7 @@ TEST_CASE("A PNG for people is sRGB-encoded and decodes to what was meant") {
 TEST_CASE("The sRGB curve and its inverse agree, and alpha is not bent by it") {
   for (float v = 0; v <= 1; v += 0.01F)
     CHECK(weft::srgb_decoded(weft::srgb_encoded(v)) == Approx(v).margin(1e-6));
-  const Folder folder;
+  const TemporaryFolder folder;
   Image image(1, 1, 4);
   image.values = {1, 1, 1, 51 / 255.0F};
   weft::write_image(folder.path / "a.png", image, Encoding::colour);
@@ -119,7 +105,7 @@ TEST_CASE("The sRGB curve and its inverse agree, and alpha is not bent by it") {
 }
 
 TEST_CASE("Two writes of one picture give the same bytes") {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const std::string extension : {".exr", ".png"}) {
     weft::write_image(folder.path / ("a" + extension), ramp(9, 4, 3), Encoding::colour);
     const std::string bytes = bytes_of(folder.path / ("a" + extension));
@@ -129,7 +115,7 @@ TEST_CASE("Two writes of one picture give the same bytes") {
 }
 
 TEST_CASE("What cannot be read is named with the reason") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path missing = folder.path / "missing.exr";
   CHECK_THAT(message_of([&] { weft::read_image(missing, Encoding::linear); }),
              Contains(missing.string()) && Contains("no such file"));
@@ -143,7 +129,7 @@ TEST_CASE("What cannot be read is named with the reason") {
 }
 
 TEST_CASE("A truncated EXR or PNG is refused wherever it was cut") {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const std::string extension : {".exr", ".png"}) {
     const fs::path path = folder.path / ("whole" + extension);
     weft::write_image(path, ramp(64, 64, 3), Encoding::linear);
@@ -160,7 +146,7 @@ TEST_CASE("A truncated EXR or PNG is refused wherever it was cut") {
 }
 
 TEST_CASE("What cannot be written is named, and nothing is left") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Image image = ramp(4, 4, 3);
   CHECK_THAT(message_of([&] { weft::write_image(folder.path / "a.xyz", image, Encoding::linear); }),
              Contains("a.xyz") && Contains(".exr"));
@@ -176,5 +162,5 @@ TEST_CASE("What cannot be written is named, and nothing is left") {
   nan.values[3 * 5] = std::numeric_limits<float>::quiet_NaN();
   CHECK_THAT(message_of([&] { weft::write_image(folder.path / "nan.png", nan, Encoding::colour); }),
              Contains("1 values are NaN") && Contains("x 1, y 1"));
-  CHECK(folder.files() == 0);
+  CHECK(fs::is_empty(folder.path));
 }

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "btf/error.h"
+
 namespace {
 
 using weft::Image;
@@ -48,4 +50,10 @@ TEST_CASE("Text over the edge is cut") {
   Image image(20, 20, 3);
   weft::draw_text(image, 10, 2, "wide text", 20, {1, 1, 1});
   CHECK(ink_of(image).right == 19);
+}
+
+TEST_CASE("Text that would come out as other glyphs is refused") {
+  Image image(20, 20, 3);
+  CHECK_THROWS_AS(weft::draw_text(image, 1, 10, "\u2265 1", 20, {1, 1, 1}), weft::Error);
+  CHECK_THROWS_AS(weft::text_width("\n", 20), weft::Error);
 }

@@ -3,22 +3,16 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <random>
 
 #include "btf/atomic_file.h"
 #include "btf/error.h"
 #include "images/image_file.h"
+#include "tests/temporary_folder.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
-
-struct Folder {
-  fs::path path =
-      fs::temp_directory_path() / ("weft_report_" + std::to_string(std::random_device{}()));
-  ~Folder() { fs::remove_all(path); }
-};
 
 weft::Report sample() {
   weft::Image grey(8, 6, 3);
@@ -44,7 +38,7 @@ TEST_CASE("HTML's own characters are escaped") {
 }
 
 TEST_CASE("A report has its page and its pictures in one folder and fetches nothing") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path index = weft::write_report(folder.path / "demo", sample());
   CHECK(index == folder.path / "demo" / "index.html");
   const std::string html = weft::read_text(index);
@@ -61,15 +55,15 @@ TEST_CASE("A report has its page and its pictures in one folder and fetches noth
 }
 
 TEST_CASE("A report that cannot be laid out is refused before anything is written") {
-  const Folder folder;
+  const TemporaryFolder folder;
   weft::Report twice = sample();
   twice.sections[0].rows[0].pictures[1].name = "cube_raw";
-  CHECK_THROWS_AS(weft::write_report(folder.path, twice), weft::Error);
+  CHECK_THROWS_AS(weft::write_report(folder.path / "report", twice), weft::Error);
   weft::Report outside = sample();
   outside.sections[0].rows[0].pictures[1].name = "../cube";
-  CHECK_THROWS_AS(weft::write_report(folder.path, outside), weft::Error);
+  CHECK_THROWS_AS(weft::write_report(folder.path / "report", outside), weft::Error);
   weft::Report ragged = sample();
   ragged.sections[0].tables[0].rows[0].pop_back();
-  CHECK_THROWS_AS(weft::write_report(folder.path, ragged), weft::Error);
-  CHECK_FALSE(fs::exists(folder.path));
+  CHECK_THROWS_AS(weft::write_report(folder.path / "report", ragged), weft::Error);
+  CHECK_FALSE(fs::exists(folder.path / "report"));
 }
