@@ -16,7 +16,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 // own.
 constexpr int filter_purpose = 0;
 constexpr int bounce_purpose = 1;
-constexpr int roulette_purpose = 2;
+constexpr int end_purpose = 2;  ///< whether the path ends, and the lobe of the bounce
 constexpr int environment_purpose = 3;
 /// A bounced footprint widens by this much a unit of way; see RenderSettings::lod.
 constexpr float bounce_spread = 0.25F;
@@ -174,7 +174,7 @@ void PathBatch::request_light(std::size_t hit, const Vec3& direction, float dist
   if (!(light.z > 0)) return;
   // Behind the triangle itself, though not behind its interpolated normal.
   if (settings_.shadows && !(surface.geometric_normal.dot(direction) > 0)) return;
-  requests_.push_back({hit, irradiance, light});
+  requests_.push_back({hit, irradiance, light, 0});
   distances_.push_back(distance);
 }
 
@@ -202,7 +202,7 @@ void PathBatch::request_environments(int depth) {
       const EnvironmentSampler::Sample sample = scene_.environments[e].sample(u0, u1);
       if (!(sample.pdf > 0)) continue;
       const float other =
-          combine_ ? std::max(0.0F, cosine_pdf(hits_[i].to_local(sample.direction))) : 0.0F;
+          combine_ ? bounce_pdf(hits_[i], hits_[i].to_local(sample.direction)) : 0.0F;
       request_light(i, sample.direction, infinity, sample.radiance / (sample.pdf + other));
     }
   }
@@ -230,12 +230,29 @@ void PathBatch::remove_shadowed(std::size_t first, Coherence coherence) {
   distances_.resize(kept);
 }
 
-/// One a hit, cosine-weighted.
+/// One a hit.
 void PathBatch::request_bounces(int depth) {
-  for (std::size_t i = 0; i < hits_.size(); ++i) {
-    const auto [u0, u1] = random(paths_[hit_paths_[i]], depth, bounce_purpose);
-    requests_.push_back({i, {0, 0, 0}, cosine_direction(u0, u1)});
+  for (std::size_t i = 0; i < hits_.size(); ++i) requests_.push_back(bounce(i, depth));
+}
+
+PathBatch::Request PathBatch::bounce(std::size_t hit, int depth) const {
+  const SurfaceHit& surface = hits_[hit];
+  const Path& path = paths_[hit_paths_[hit]];
+  const auto [u0, u1] = random(path, depth, bounce_purpose);
+  if (const auto& bsdf = scene_.scene.materials[surface.material].bsdf) {
+    const float lobe = random(path, depth, end_purpose)[1];
+    const Bsdf::Sample sample = bsdf->sample(surface.view, {lobe, u0, u1});
+    return {hit, {0, 0, 0}, sample.light, sample.pdf};
   }
+  const Direction light = cosine_direction(u0, u1);
+  return {hit, {0, 0, 0}, light, cosine_pdf(light)};
+}
+
+/// Density of `bounce` at `light`, per sr.
+float PathBatch::bounce_pdf(const SurfaceHit& surface, const Direction& light) const {
+  if (!(light.z > 0)) return 0;
+  const auto& bsdf = scene_.scene.materials[surface.material].bsdf;
+  return bsdf ? bsdf->pdf(light, surface.view) : cosine_pdf(light);
 }
 
 /// Asks each material for all its requests at once.
@@ -273,7 +290,8 @@ void PathBatch::continue_paths(int depth) {
   for (std::size_t r = light_requests_; r < requests_.size(); ++r) {
     const SurfaceHit& surface = hits_[requests_[r].hit];
     Path& path = paths_[hit_paths_[requests_[r].hit]];
-    path.pdf = cosine_pdf(requests_[r].light);
+    path.pdf = requests_[r].pdf;
+    if (!(path.pdf > 0)) continue;
     path.throughput *= answers_[r] / path.pdf;
     if (!is_finite(path.throughput)) {  // shows in the film's count
       path.radiance = path.throughput;
@@ -281,7 +299,7 @@ void PathBatch::continue_paths(int depth) {
     }
     if (depth >= roulette_depth) {
       const float survival = std::min(longest_survival, largest_magnitude(path.throughput));
-      if (random(path, depth, roulette_purpose)[0] >= survival) continue;
+      if (random(path, depth, end_purpose)[0] >= survival) continue;
       path.throughput /= survival;
     }
     const Vec3 direction = surface.to_world(requests_[r].light).normalized();

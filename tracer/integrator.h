@@ -2,8 +2,8 @@
 // as streams and each appearance is asked once for all its points.
 //
 // At each hit every point and directional light is summed; each environment by one sample of its
-// own and one of the surface's (cosine-weighted, which also goes on as the path), combined by the
-// balance heuristic (Veach).
+// own and one of the surface's (its BSDF's own, or cosine-weighted for a BTF; it also goes on as
+// the path), combined by the balance heuristic (Veach).
 #pragma once
 
 #include <array>
@@ -42,6 +42,7 @@ class PathBatch {
     std::size_t hit;
     Rgb weight;
     Direction light;
+    float pdf = 0;  ///< of a bounce's direction, per sr
   };
 
   void start(int x0, int y0, int x1, int y1, int first_sample, int last_sample);
@@ -53,6 +54,8 @@ class PathBatch {
   void request_environments(int depth);
   void remove_shadowed(std::size_t first, Coherence coherence);
   void request_bounces(int depth);
+  Request bounce(std::size_t hit, int depth) const;
+  float bounce_pdf(const SurfaceHit& surface, const Direction& light) const;
   void evaluate();
   void add_light();
   void continue_paths(int depth);

@@ -8,6 +8,7 @@
 
 #include "btf/appearance.h"
 #include "images/image.h"
+#include "tracer/bsdf.h"
 #include "tracer/triangle_mesh.h"
 
 namespace weft {
@@ -44,6 +45,9 @@ struct EnvironmentLight {
 struct SceneMaterial {
   std::string name;
   std::shared_ptr<const Appearance> appearance;
+  /// What the appearance is, where it is a plain BSDF: draws directions for it. Null: drawn by the
+  /// cosine.
+  std::shared_ptr<const Bsdf> bsdf;
   Vec2 repeat{1, 1};  ///< uv of the mesh are multiplied by this
 };
 

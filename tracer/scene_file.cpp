@@ -113,7 +113,8 @@ SceneMaterial read_material(const std::string& name, const Settings& settings,
   material.name = name;
   settings.text("type");  // there is no material by default
   if (settings.choice("type", {"btf", "lambert", "conductor", "plastic"}) != "btf") {
-    material.appearance = std::make_shared<BsdfAppearance>(read_bsdf(settings));
+    material.bsdf = std::make_shared<Bsdf>(read_bsdf(settings));
+    material.appearance = std::make_shared<BsdfAppearance>(*material.bsdf);
     return material;
   }
   material.repeat = settings.vec2("repeat", {1, 1});

@@ -7,6 +7,7 @@
 #include "btf/error.h"
 #include "tests/statistics.h"
 #include "tests/tracer/test_scenes.h"
+#include "tracer/bsdf_appearance.h"
 #include "tracer/camera.h"
 
 namespace weft {
@@ -74,6 +75,7 @@ TEST_CASE("The local frame is (dP/du, n x dP/du, n), not flipped at the back", "
       std::make_shared<FunctionAppearance>([](const AppearanceQuery& q) {
         return Rgb(q.light.x, q.light.y, q.light.z) * 0.25F + Rgb(0.5F, 0.5F, 0.5F);
       }),
+      nullptr,
       {1, 1}};
   Scene scene = scene_of(wide_plane + "\nrotate = [0, 0, 90]", light_direction);
   const Direction light = from_spherical(0.9, 0.3);
@@ -92,6 +94,7 @@ TEST_CASE("uv repeat as the material says", "[render]") {
   const SceneMaterial texture{"uv",
                               std::make_shared<FunctionAppearance>(
                                   [](const AppearanceQuery& q) { return Rgb(q.uv.x, q.uv.y, 0); }),
+                              nullptr,
                               {3, 5}};
   Scene scene = scene_of("type = 'plane'\nsize = [4, 4]", texture);
   scene.directional_lights.push_back({{0, 0, 1}, {1, 1, 1}});
@@ -282,10 +285,43 @@ TEST_CASE("Pictures of few samples are those of many, on average", "[render]") {
   CHECK(statistics::t_test(samples, reference) > 1e-3);
 }
 
+TEST_CASE("A BSDF's own sampling changes the noise, not the picture", "[render]") {
+  const Bsdf bsdf = GENERATE(Bsdf::conductor_f0({0.9F, 0.7F, 0.5F}, 0.2F),
+                             Bsdf::plastic({0.6F, 0.3F, 0.1F}, 1.5F, 0.3F));
+  SceneMaterial material{"glossy", std::make_shared<BsdfAppearance>(bsdf), nullptr, {1, 1}};
+  Scene scene = scene_of("type = 'torus'", material, 24);
+  EnvironmentLight light;
+  light.radiance = Image(8, 4);
+  for (int i = 0; i < 32; ++i) light.radiance.set_rgb(i % 8, i / 8, {1.0F + i % 5, 1, 1});
+  scene.environments.push_back(light);
+  const auto pictures = [&] {
+    std::vector<double> means;
+    double variance = 0;
+    for (std::uint64_t seed = 0; seed < 16; ++seed) {
+      RenderSettings settings = settings_with(16, 3);
+      settings.seed = seed;
+      const PictureMean mean = picture_mean(render_quietly(scene, settings));
+      means.push_back(mean.mean);
+      variance += mean.variance;
+    }
+    return std::pair(means, variance);
+  };
+  const auto [by_cosine, cosine_variance] = pictures();
+  scene.materials[0].bsdf = std::make_shared<Bsdf>(bsdf);
+  const auto [by_bsdf, bsdf_variance] = pictures();
+  // Paired by seed: the differences have mean zero.
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < by_bsdf.size(); ++i) differences.push_back(by_bsdf[i] - by_cosine[i]);
+  CHECK(statistics::t_test(differences, 0) > 1e-3);
+  CHECK(by_bsdf[0] == Approx(by_cosine[0]).epsilon(0.02));
+  CHECK(bsdf_variance < cosine_variance);
+}
+
 SceneMaterial shows_lod() {
   return {"lod",
           std::make_shared<FunctionAppearance>(
               [](const AppearanceQuery& q) { return Rgb(q.lod, q.lod, q.lod); }, 64),
+          nullptr,
           {2, 2}};
 }
 
@@ -318,6 +354,7 @@ TEST_CASE("An appearance's invalid answers are counted with their place", "[rend
                              std::make_shared<FunctionAppearance>([=](const AppearanceQuery& q) {
                                return q.uv.x < 0.5F ? Rgb(nan, 0, 0) : Rgb(-1, -1, -1);
                              }),
+                             nullptr,
                              {1, 1}};
   Scene scene = scene_of(wide_plane, broken);
   const bool lamp = GENERATE(true, false);  // seen as direct light, and in a bounce alone

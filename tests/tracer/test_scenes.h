@@ -36,6 +36,7 @@ inline SceneMaterial lambert(float albedo) {
   return {"lambert",
           std::make_shared<FunctionAppearance>(
               [f](const AppearanceQuery& q) { return Rgb(f, f, f) * q.light.z; }),
+          nullptr,
           {1, 1}};
 }
 
