@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "btf/error.h"
+#include "cli/btf_option.h"
 #include "cli/command.h"
-#include "codecs/representation.h"
 #include "images/image_file.h"
 #include "tracer/render.h"
 #include "tracer/scene_file.h"
@@ -43,17 +43,13 @@ struct Options {
   RenderSettings settings;
 };
 
-/// "PATH" for every BTF of the scene, "MATERIAL=PATH" for one. A path that exists wins over a `=`
-/// in its name.
+/// By material, or for all under "", as `read_scene` takes them.
 std::map<std::string, std::filesystem::path> btf_paths(const std::vector<std::string>& btfs) {
   std::map<std::string, std::filesystem::path> paths;
-  for (const std::string& btf : btfs) {
-    const std::size_t equals = std::filesystem::exists(btf) ? std::string::npos : btf.find('=');
-    const bool named = equals != std::string::npos;
-    const std::string material = named ? btf.substr(0, equals) : "";
-    if (!paths.emplace(material, named ? btf.substr(equals + 1) : btf).second) {
-      throw bad_input("--btf " + btf,
-                      named ? "this material has a BTF already" : "every BTF is replaced already",
+  for (const std::string& text : btfs) {
+    const BtfOption btf = parse_btf_option(text);
+    if (!paths.emplace(btf.material, btf.path).second) {
+      throw bad_input("--btf " + text, "another --btf stands for the same material already",
                       "name each material once: --btf MATERIAL=PATH");
     }
   }
@@ -126,10 +122,7 @@ void run(Options& options, Session& session) {
   options.settings.filter = filters.at(options.filter);
   options.settings.shadows = !options.no_shadows;
   options.settings.seed = session.seed;
-  const auto open = [](const std::filesystem::path& path) -> std::shared_ptr<const Appearance> {
-    return open_representation(path);
-  };
-  const Scene scene = read_scene(options.scene, open, btf_paths(options.btfs), options.overrides);
+  const Scene scene = read_scene(options.scene, open_datasets(), btf_paths(options.btfs), options.overrides);
   Progress progress("render", session.quiet || session.json);
   const RenderResult result = render(scene, options.settings, progress);
   write_image(options.output, result.image, Encoding::colour);
