@@ -122,7 +122,8 @@ void run(Options& options, Session& session) {
   options.settings.filter = filters.at(options.filter);
   options.settings.shadows = !options.no_shadows;
   options.settings.seed = session.seed;
-  const Scene scene = read_scene(options.scene, open_datasets(), btf_paths(options.btfs), options.overrides);
+  const Scene scene =
+      read_scene(options.scene, open_datasets(), btf_paths(options.btfs), options.overrides);
   Progress progress("render", session.quiet || session.json);
   const RenderResult result = render(scene, options.settings, progress);
   write_image(options.output, result.image, Encoding::colour);

@@ -1,0 +1,79 @@
+// weft render as a user calls it: pictures whose every pixel is known, and how it complains.
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "images/image_file.h"
+#include "tests/cli/program.h"
+#include "tests/cli/small_dataset.h"
+#include "tests/temporary_folder.h"
+
+namespace {
+
+/// A folder with a scene (a plane seen from above in light from above) and its BTF.
+struct RenderFolder : TemporaryFolder {
+  RenderFolder() {
+    write_small_dataset(path / "small.btf");
+    std::ofstream(path / "scene.toml") << R"(
+camera = { eye = [0, 0, 4], up = [0, 1, 0], fov = 20, size = [8, 4] }
+shape = [ { type = "plane", material = "cloth", size = [4, 4] } ]
+light = [ { type = "directional", direction = [0, 0, 1], irradiance = 2 } ]
+[material.cloth]
+type = "btf"
+file = "small.btf"
+)";
+  }
+  Outcome render(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"render", "scene.toml", "-o", "out.exr"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_weft(arguments, path);
+  }
+};
+
+TEST_CASE("render answers with the BTF's own values, and with what it measured") {
+  const RenderFolder folder;
+  const Outcome outcome = folder.render(
+      {"--integrator", "direct", "--filter", "centre", "--spp", "1", "--lod", "5", "--json"});
+  REQUIRE(outcome.exit_code == 0);
+  const auto measured = nlohmann::json::parse(outcome.out);
+  CHECK(measured["width"] == 8);
+  CHECK(measured["samples"] == 32);
+  CHECK(measured["rays"] == 64);
+  CHECK(measured["rays_per_second"] > 0);
+  CHECK(measured["samples_not_finite"] == 0);
+  // Level 5 is the whole tile's mean: albedos 0.1 to 0.8.
+  const weft::Image image = weft::read_image(folder.path / "out.exr", weft::Encoding::linear);
+  REQUIRE(image.width == 8);
+  REQUIRE(image.height == 4);
+  CHECK(image.rgb(3, 2).x == Approx(0.45 / std::numbers::pi * 2).epsilon(2e-3));
+}
+
+TEST_CASE("render takes BTFs by material, overrides and a file for the variance") {
+  const RenderFolder folder;
+  const Outcome outcome = folder.render({"--btf", "cloth=small.btf", "--set", "camera.size=[3, 2]",
+                                         "--spp", "4", "--variance", "variance.exr", "--quiet"});
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.out.empty());
+  CHECK(outcome.err.empty());
+  CHECK(weft::read_image(folder.path / "variance.exr", weft::Encoding::linear).width == 3);
+}
+
+TEST_CASE("render refuses what it cannot do in one sentence, and leaves no picture") {
+  const RenderFolder folder;
+  const auto [arguments, word] = GENERATE(table<std::vector<std::string>, std::string>({
+      {{"--spp", "0"}, "--spp"},
+      {{"--max-bounces", "many"}, "unlimited"},
+      {{"--lod", "-1"}, "--lod"},
+      {{"--filter", "bxo"}, "centre"},
+      {{"--btf", "gone.btf"}, "gone.btf"},
+      {{"--btf", "silk=small.btf"}, "cloth"},
+      {{"--btf", "small.btf", "--btf", "small.btf"}, "--btf"},
+      {{"--set", "camera.fow=3"}, "fow"},
+  }));
+  const Outcome outcome = folder.render(arguments);
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Catch::Contains(word));
+  CHECK_FALSE(std::filesystem::exists(folder.path / "out.exr"));
+}
+
+}  // namespace
