@@ -87,7 +87,8 @@ struct GlContext::Egl {
     if (display == EGL_NO_DISPLAY) return;
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
-    eglTerminate(display);
+    // The display is the process's and stays: the next context opens the same one, and a driver
+    // that is unloaded with it leaves memory behind.
   }
 };
 
