@@ -86,8 +86,9 @@ TEST_CASE("Each shape has its own material, and a shared appearance is uploaded 
   Scene scene = quad_scene(red);
   scene.directional_lights = {{{0, 0, 1}, {1, 1, 1}}};
   const std::size_t bytes = preview_headless(scene, {}).bytes;
-  scene.materials.push_back({"same", red, {2, 2}});
-  scene.materials.push_back({"green", std::make_shared<LambertAppearance>(Rgb(0, 1, 0)), {1, 1}});
+  scene.materials.push_back({"same", red, nullptr, {2, 2}});
+  scene.materials.push_back(
+      {"green", std::make_shared<LambertAppearance>(Rgb(0, 1, 0)), nullptr, {1, 1}});
   scene.shapes.push_back(unit_quad(2));
   for (Vec3& p : scene.shapes[0].mesh.positions) p.x = std::min(p.x, 0.0F);
   for (Vec3& p : scene.shapes[1].mesh.positions) p.x = std::max(p.x, 0.0F);

@@ -30,6 +30,6 @@ inline weft::Scene quad_scene(std::shared_ptr<const weft::Appearance> appearance
   scene.camera.width = 64;
   scene.camera.height = 48;
   scene.shapes = {unit_quad()};
-  scene.materials = {{"paint", std::move(appearance), {1, 1}}};
+  scene.materials = {{.name = "paint", .appearance = std::move(appearance), .bsdf = nullptr}};
   return scene;
 }
