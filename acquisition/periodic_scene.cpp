@@ -15,7 +15,7 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 // More copies serve more rays in packets; fewer keep large meshes in memory.
-constexpr std::size_t triangles_for_wide_reach = 4'000'000;
+constexpr std::size_t triangles_for_wide_reach = 1'000'000;
 constexpr int max_tiles_wide = 100;
 // A ray that goes on begins this much before where it left, so that no surface falls between.
 constexpr float step_back = 1e-5F;

@@ -22,8 +22,12 @@ namespace {
 constexpr double lowest_theta = 89.9;   // degrees
 constexpr int block_edge = 8;           // texels; a block's paths are traced together
 constexpr int samples_at_once = 64;     // of each texel in a block
-constexpr std::size_t group_size = 64;  // paths whose shadow rays go to Embree in one stream
-constexpr int error_groups = 16;        // groups of samples whose spread gives the standard errors
+constexpr std::size_t group_size = 64;  // paths that are connected to the lights together
+// Shadow rays of a group to this many lights go to Embree in one stream, which stays in the cache.
+constexpr std::size_t lights_at_once = 16;
+constexpr int error_groups = 16;  // groups of samples whose spread gives the standard errors
+// A path of a closed, white inside (a ray that slipped between touching surfaces) would never end.
+constexpr int most_bounces = 4096;
 // Paths dimmer than this are ended by Russian roulette; needed only where bounces are unlimited.
 constexpr float dim_throughput = 0.02F;
 // Rays start this far off the surface, in tile units at coordinates around 1: about 40 float
@@ -63,6 +67,7 @@ TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
   rays_traced_on += other.rays_traced_on;
   missed += other.missed;
   degenerate += other.degenerate;
+  trapped += other.trapped;
   return *this;
 }
 
@@ -107,8 +112,8 @@ class ViewTracer::Block {
         contributions_(3 * group_size * n_lights_),
         sums_(static_cast<std::size_t>(3 * block_edge * block_edge) * n_lights_),
         group_sums_(error_groups * n_lights_) {
-    shadow_rays_.resize(group_size * n_lights_);
-    shadow_owners_.resize(group_size * n_lights_);
+    shadow_rays_.resize(group_size * lights_at_once);
+    shadow_owners_.resize(group_size * lights_at_once);
   }
 
   void trace(const Direction& view, std::uint64_t view_key, int left, int top) {
@@ -196,16 +201,20 @@ class ViewTracer::Block {
   }
 
   void follow_paths() {
+    const int most = std::min(tracer_.settings_.max_bounces, most_bounces);
     for (int bounce = 0; !paths_.empty(); ++bounce) {
       const Coherence coherence = bounce == 0 ? Coherence::coherent : Coherence::incoherent;
-      const bool last = bounce >= tracer_.settings_.max_bounces;
+      const bool last = bounce >= most;
       next_.clear();
       for (std::size_t begin = 0; begin < paths_.size(); begin += group_size) {
         const std::size_t end = std::min(begin + group_size, paths_.size());
         connect(begin, end, coherence);
         if (!last) scatter(begin, end, bounce);
       }
-      if (last) break;
+      if (last) {
+        if (most == most_bounces) statistics_.trapped += static_cast<std::int64_t>(paths_.size());
+        break;
+      }
       std::swap(paths_, next_);
       for (std::size_t i = 0; i < paths_.size(); ++i) {
         rays_.set(i, origins_[i], paths_[i].direction, 0, 0);
@@ -261,8 +270,17 @@ class ViewTracer::Block {
       vertices_[i - begin] = vertex_of(paths_[i]);
       reflect_lights(paths_[i], vertices_[i - begin], &contributions_[3 * (i - begin) * n_lights_]);
     }
+    for (std::size_t l = 0; l < n_lights_; l += lights_at_once) {
+      add_unoccluded(begin, end, l, std::min(l + lights_at_once, n_lights_), coherence);
+    }
+  }
+
+  // Traces the shadow rays of paths [begin, end) to lights [first, last), light by light, and adds
+  // what arrives.
+  void add_unoccluded(std::size_t begin, std::size_t end, std::size_t first, std::size_t last,
+                      Coherence coherence) {
     std::size_t count = 0;
-    for (std::size_t l = 0; l < n_lights_; ++l) {
+    for (std::size_t l = first; l < last; ++l) {
       for (std::size_t k = 0; k < end - begin; ++k) {
         const float* value = &contributions_[3 * (k * n_lights_ + l)];
         if (value[0] + value[1] + value[2] > 0) {

@@ -105,12 +105,14 @@ void report(const AcquisitionReport& result, const AcquisitionSettings& settings
                       {"rays_per_second", rays_per_second},
                       {"samples_per_second", samples_per_second},
                       {"missed_percent", missed},
-                      {"degenerate_hits", s.degenerate}};
+                      {"degenerate_hits", s.degenerate},
+                      {"trapped_paths", s.trapped}};
   session.say(fmt::format("{}: {:.1f} s, {:.3g} rays/s, {:.3g} samples/s (texel x pair x spp)",
                           options.output, result.seconds, rays_per_second, samples_per_second));
   if (result.views_kept > 0)
     session.say(fmt::format("{} views were there already", result.views_kept));
   if (missed > 0) session.say(fmt::format("{:.2g} % of rays met nothing: add a floor", missed));
+  if (s.trapped > 0) session.say(fmt::format("{} paths never left the structure", s.trapped));
   if (s.degenerate > 0) {
     session.say(fmt::format("{} paths ended on triangles without an area", s.degenerate));
   }

@@ -84,10 +84,10 @@ TEST_CASE("checker agrees with another renderer") {
     return;
   }
   const Mesostructure structure = test::checker();
-  compare(structure, {"checker_Lt30_Lp20_Vt0_Vp0_direct", 30, 20, 0, 0, 0, 5.6e-6}, 256);
-  compare(structure, {"checker_Lt30_Lp20_Vt0_Vp0_gi8", 30, 20, 0, 0, 8, 1.6e-4}, 256);
-  compare(structure, {"checker_Lt75_Lp10_Vt45_Vp100_direct", 75, 10, 45, 100, 0, 8.8e-6}, 256);
-  compare(structure, {"checker_Lt75_Lp10_Vt45_Vp100_gi8", 75, 10, 45, 100, 8, 9.7e-5}, 256);
+  compare(structure, {"checker_Lt30_Lp20_Vt0_Vp0_direct", 30, 20, 0, 0, 0, 5.6e-6}, 128);
+  compare(structure, {"checker_Lt30_Lp20_Vt0_Vp0_gi8", 30, 20, 0, 0, 8, 1.6e-4}, 128);
+  compare(structure, {"checker_Lt75_Lp10_Vt45_Vp100_direct", 75, 10, 45, 100, 0, 8.8e-6}, 128);
+  compare(structure, {"checker_Lt75_Lp10_Vt45_Vp100_gi8", 75, 10, 45, 100, 8, 9.7e-5}, 128);
 }
 
 TEST_CASE("rings agree with another renderer") {
@@ -96,6 +96,6 @@ TEST_CASE("rings agree with another renderer") {
     return;
   }
   const Mesostructure structure = test::rings();
-  compare(structure, {"rings_Lt45_Lp30_Vt30_Vp250_direct", 45, 30, 30, 250, 0, 2.9e-5}, 256);
-  compare(structure, {"rings_Lt45_Lp30_Vt30_Vp250_gi8", 45, 30, 30, 250, 8, 2.1e-4}, 256);
+  compare(structure, {"rings_Lt45_Lp30_Vt30_Vp250_direct", 45, 30, 30, 250, 0, 2.9e-5}, 128);
+  compare(structure, {"rings_Lt45_Lp30_Vt30_Vp250_gi8", 45, 30, 30, 250, 8, 2.1e-4}, 128);
 }
