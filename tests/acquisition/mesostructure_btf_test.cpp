@@ -120,7 +120,7 @@ TEST_CASE("a mesostructure painted white sends back all light at every view", "[
     check_white(name, named_directions("ubo81"));
 }
 
-TEST_CASE("an offset shifts every image by whole texels and changes nothing else") {
+TEST_CASE("an offset shifts every image by whole texels and changes nothing else", "[heavy]") {
   const std::vector<Direction> lights = {from_spherical(0.5, 1.0),
                                          from_spherical(radians(75.0), 4.0)};
   const TraceSettings settings{.width = 100, .height = 100, .spp = 8, .max_bounces = 4, .seed = 2};

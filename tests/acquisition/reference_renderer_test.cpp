@@ -78,7 +78,7 @@ void compare(const Mesostructure& structure, const Pair& pair, int spp) {
 
 }  // namespace
 
-TEST_CASE("checker agrees with another renderer") {
+TEST_CASE("checker agrees with another renderer", "[heavy]") {
   if (!std::filesystem::exists(reference_folder())) {
     WARN("skipped: " << reference_folder() << " is not there");
     return;
@@ -90,7 +90,7 @@ TEST_CASE("checker agrees with another renderer") {
   compare(structure, {"checker_Lt75_Lp10_Vt45_Vp100_gi8", 75, 10, 45, 100, 8, 9.7e-5}, 128);
 }
 
-TEST_CASE("rings agree with another renderer") {
+TEST_CASE("rings agree with another renderer", "[heavy]") {
   if (!std::filesystem::exists(reference_folder())) {
     WARN("skipped: " << reference_folder() << " is not there");
     return;

@@ -67,7 +67,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a white structure sends back all light") {
+TEST_CASE("a white structure sends back all light", "[heavy]") {
   // The tile's mean integrated over the lights is 1. 65,536 paths a view keep the noise below 0.2
   // %.
   const HemisphereSampling lights(named_directions("fibonacci:1024"));
@@ -81,7 +81,7 @@ TEST_CASE("a white structure sends back all light") {
   }
 }
 
-TEST_CASE("a hemispherical pit sends back rho / (2 - rho) of what enters it") {
+TEST_CASE("a hemispherical pit sends back rho / (2 - rho) of what enters it", "[heavy]") {
   // Cavity theory: from any point of the pit half of the pit's sphere is the opening, so that the
   // share is rho / 2 + (rho / 2)^2 ... = rho / (2 - rho). The mesh is a polyhedron inside the
   // sphere: its opening's area is its own.
