@@ -32,8 +32,9 @@ struct TraceStatistics {
   std::int64_t shadow_rays = 0;
   std::int64_t rays_traced_on = 0;  ///< single rays for what left the copies of the tile
   std::int64_t missed = 0;          ///< paths whose first ray met nothing
-  std::int64_t trapped = 0;         ///< paths ended after 4,096 bounces: inside a closed surface, most likely
-  std::int64_t degenerate = 0;      ///< hits on triangles without an area, where a path ends
+  std::int64_t trapped =
+      0;  ///< paths ended after 4,096 bounces: inside a closed surface, most likely
+  std::int64_t degenerate = 0;  ///< hits on triangles without an area, where a path ends
 
   std::int64_t rays() const { return primary_rays + bounce_rays + shadow_rays + rays_traced_on; }
   TraceStatistics& operator+=(const TraceStatistics& other);

@@ -18,7 +18,8 @@ struct SurfacePoint {
 };
 
 /// (columns + 1) x (rows + 1) vertices, each cell cut into two triangles that are counter-clockwise
-/// where `normal` looks at the viewer; triangles with two corners in one place (at poles) are left out.
+/// where `normal` looks at the viewer; triangles with two corners in one place (at poles) are left
+/// out.
 /// @param surface  point of column 0 … columns and row 0 … rows.
 TriangleMesh tessellate(int columns, int rows,
                         const std::function<SurfacePoint(int column, int row)>& surface);
