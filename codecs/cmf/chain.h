@@ -9,14 +9,20 @@
 #include "codecs/cmf/half_difference.h"
 #include "codecs/cmf/lanes.h"
 #include "codecs/cmf/parabolic_map.h"
+#include "codecs/cmf/rank_one.h"
 #include "codecs/cmf/sample_map.h"
 
 namespace weft::cmf {
+
+/// Which error the rank-1 step over light and view makes least: of the residual f / Q, each pair
+/// alike (the paper's SVD), or of B, as it is seen.
+enum class RankOne { weighted, plain };
 
 struct ChainOptions {
   int resolution = 32;       ///< texels a side of each factor's map
   bool half = true;          ///< with the factor over the half-vector, Q
   int difference_rings = 8;  ///< of the grid that Q averages over: rings x 2 rings
+  RankOne rank_one = RankOne::weighted;
   int refine = 0;            ///< rounds that alternate over all factors
   float floor = 1.0F / 255;  ///< least Q, as a share of its map's largest
 };
@@ -39,7 +45,7 @@ class Chain {
 
  private:
   LaneVector half_map(const LaneVector& f) const;
-  LaneVector residual(const LaneVector& f, const LaneVector& half) const;
+  LightView light_and_view(const LaneVector& f, const LaneVector& q) const;
 
   std::size_t n_lights_;
   std::size_t n_views_;

@@ -21,6 +21,9 @@ FitOptions fit_options(const Settings& parameters) {
   chain.resolution = static_cast<int>(parameters.integer("resolution", chain.resolution, 2, 256));
   chain.difference_rings =
       static_cast<int>(parameters.integer("difference_rings", chain.difference_rings, 1, 64));
+  chain.rank_one = parameters.choice("rank_one", {"weighted", "plain"}) == "plain"
+                       ? RankOne::plain
+                       : RankOne::weighted;
   chain.refine = static_cast<int>(parameters.integer("refine", chain.refine, 0, 100000));
   options.eight_bit = parameters.choice("bits", {"8", "float"}) == "8";
   // Below one step of 8 bits Q would be lost; floats carry a wider range.
@@ -41,6 +44,9 @@ std::string parameter_help() {
          "clusters = 256            size of each factor's codebook, 1 to 256\n"
          "difference_rings = 8      grid that the half factor averages over: N x 2 N differences\n"
          "factors = light,half,view also light,view: the chain without the half factor\n"
+         "rank_one = weighted       what the light and view factors fit: weighted: B, as it is "
+         "seen; "
+         "plain: f / Q, the paper's SVD\n"
          "refine = 0                rounds that alternate over all factors after the chain\n"
          "refit_scale = true        solve the scale map again after clustering and quantisation\n"
          "resolution = 32           texels a side of each parabolic map, 2 to 256\n"
@@ -48,15 +54,17 @@ std::string parameter_help() {
 }
 
 std::string to_json(const FitOptions& options) {
-  const nlohmann::json json{{"bits", options.eight_bit ? "8" : "float"},
-                            {"clustered", options.clustered},
-                            {"clusters", options.clusters},
-                            {"difference_rings", options.chain.difference_rings},
-                            {"factors", options.chain.half ? three_factors : two_factors},
-                            {"refine", options.chain.refine},
-                            {"refit_scale", options.refit_scale},
-                            {"resolution", options.chain.resolution},
-                            {"seed", options.seed}};
+  const nlohmann::json json{
+      {"bits", options.eight_bit ? "8" : "float"},
+      {"clustered", options.clustered},
+      {"clusters", options.clusters},
+      {"difference_rings", options.chain.difference_rings},
+      {"factors", options.chain.half ? three_factors : two_factors},
+      {"rank_one", options.chain.rank_one == RankOne::plain ? "plain" : "weighted"},
+      {"refine", options.chain.refine},
+      {"refit_scale", options.refit_scale},
+      {"resolution", options.chain.resolution},
+      {"seed", options.seed}};
   return json.dump();
 }
 

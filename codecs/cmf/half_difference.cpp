@@ -117,4 +117,14 @@ std::vector<BilinearTaps> half_lookup(const HemisphereSampling& lights,
   return lookup;
 }
 
+LaneVector looked_up(const LaneVector& map, std::span<const BilinearTaps> lookup) {
+  LaneVector values(lookup.size());
+  for (std::size_t pair = 0; pair < lookup.size(); ++pair) {
+    const BilinearTaps& taps = lookup[pair];
+    for (std::size_t k = 0; k < 4; ++k)
+      add_scaled(values[pair], taps.weight[k], map[taps.index[k]]);
+  }
+  return values;
+}
+
 }  // namespace weft::cmf

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "btf/hemisphere_sampling.h"
@@ -46,5 +47,8 @@ SparseRows half_average(const HemisphereSampling& lights, const HemisphereSampli
 /// The half map's texels that each [light][view] pair asks for.
 std::vector<BilinearTaps> half_lookup(const HemisphereSampling& lights,
                                       const HemisphereSampling& views, const ParabolicMap& map);
+
+/// Bilinear lookup of the half map at each pair.
+LaneVector looked_up(const LaneVector& map, std::span<const BilinearTaps> lookup);
 
 }  // namespace weft::cmf

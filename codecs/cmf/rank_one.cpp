@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace weft::cmf {
 
@@ -51,6 +52,51 @@ double normalise(Vector& v, const Vector& before) {
   return change;
 }
 
+float ratio_or(double numerator, double denominator, float otherwise) {
+  return denominator > 0 ? static_cast<float>(numerator / denominator) : otherwise;
+}
+
+// P_i = sum_j f Q R / sum_j (Q R)^2.
+Lanes solved_light(const Lanes* f, const Lanes* q, const LaneVector& view, const Lanes& before) {
+  DoubleLanes top;
+  DoubleLanes bottom;
+  for (std::size_t j = 0; j < view.size(); ++j) {
+    for (int k = 0; k < lane_count; ++k) {
+      const double qr = q[j][k] * view[j][k];
+      top[k] += f[j][k] * qr;
+      bottom[k] += qr * qr;
+    }
+  }
+  Lanes light;
+  for (int k = 0; k < lane_count; ++k) light[k] = ratio_or(top[k], bottom[k], before[k]);
+  return light;
+}
+
+// P, then R_j = sum_i w f P Q / sum_i w (P Q)^2 with the new P, in one pass over the pairs.
+void solve_light_and_view(const LaneVector& f, const LaneVector& q,
+                          std::span<const double> light_weights, LightView& factors) {
+  const std::size_t n_views = factors.view.size();
+  Vector top(n_views);
+  Vector bottom(n_views);
+  for (std::size_t i = 0; i < factors.light.size(); ++i) {
+    const Lanes* f_row = &f[i * n_views];
+    const Lanes* q_row = &q[i * n_views];
+    const Lanes p = solved_light(f_row, q_row, factors.view, factors.light[i]);
+    for (std::size_t j = 0; j < n_views; ++j) {
+      for (int k = 0; k < lane_count; ++k) {
+        const double pq = p[k] * q_row[j][k];
+        top[j][k] += light_weights[i] * f_row[j][k] * pq;
+        bottom[j][k] += light_weights[i] * pq * pq;
+      }
+    }
+    factors.light[i] = p;
+  }
+  for (std::size_t j = 0; j < n_views; ++j) {
+    Lanes& r = factors.view[j];
+    for (int k = 0; k < lane_count; ++k) r[k] = ratio_or(top[j][k], bottom[j][k], r[k]);
+  }
+}
+
 }  // namespace
 
 LightView rank_one(const LaneVector& f, std::size_t n_lights, std::size_t n_views) {
@@ -78,6 +124,12 @@ LightView rank_one(const LaneVector& f, std::size_t n_lights, std::size_t n_view
     for (int k = 0; k < lane_count; ++k) result.view[j][k] = static_cast<float>(v[j][k]);
   }
   return result;
+}
+
+LightView weighted_rank_one(const LaneVector& f, const LaneVector& q,
+                            std::span<const double> light_weights, int rounds, LightView start) {
+  for (int round = 0; round < rounds; ++round) solve_light_and_view(f, q, light_weights, start);
+  return start;
 }
 
 }  // namespace weft::cmf
