@@ -44,9 +44,12 @@ constexpr int weighted_rounds = 10;
 // Less than any reflectance: half's least positive value is 6e-8.
 constexpr float darkest = 1e-30F;
 
-// P_h: F_hd averaged over its columns. Below `floor` of its largest value Q is raised: the residual
-// (equation 7) stays bounded, and no texel that matters falls to zero in 8 bits. A map of zeros
-// becomes one of ones.
+// Least Q, as a share of its map's largest. The same for 8 bits as for float, so that both fit and
+// cluster alike.
+constexpr float floor_share = 1e-4F;
+
+// P_h: F_hd averaged over its columns. Below `floor_share` of its largest value Q is raised: the
+// residual (equation 7) stays bounded. A map of zeros becomes one of ones.
 LaneVector Chain::half_map(const LaneVector& f) const {
   LaneVector map = multiply(average_, f);
   Lanes largest;
@@ -55,7 +58,7 @@ LaneVector Chain::half_map(const LaneVector& f) const {
   }
   for (Lanes& texel : map) {
     for (int k = 0; k < lane_count; ++k) {
-      texel[k] = largest[k] > darkest ? std::max(texel[k], options_.floor * largest[k]) : 1.0F;
+      texel[k] = largest[k] > darkest ? std::max(texel[k], floor_share * largest[k]) : 1.0F;
     }
   }
   return map;

@@ -23,8 +23,7 @@ struct ChainOptions {
   bool half = true;          ///< with the factor over the half-vector, Q
   int difference_rings = 8;  ///< of the grid that Q averages over: rings x 2 rings
   RankOne rank_one = RankOne::weighted;
-  int refine = 0;            ///< rounds that alternate over all factors
-  float floor = 1.0F / 255;  ///< least Q, as a share of its map's largest
+  int refine = 0;  ///< rounds that alternate over all factors
 };
 
 /// Maps over the light, the half-vector and the view; `half` is empty without Q.

@@ -26,8 +26,6 @@ FitOptions fit_options(const Settings& parameters) {
                        : RankOne::weighted;
   chain.refine = static_cast<int>(parameters.integer("refine", chain.refine, 0, 100000));
   options.eight_bit = parameters.choice("bits", {"8", "float"}) == "8";
-  // Below one step of 8 bits Q would be lost; floats carry a wider range.
-  chain.floor = options.eight_bit ? 1.0F / 255 : 1e-4F;
   options.clustered = parameters.flag("clustered", options.clustered);
   options.clusters = static_cast<int>(parameters.integer("clusters", options.clusters, 1, 256));
   options.refit_scale = parameters.flag("refit_scale", options.refit_scale);
@@ -44,9 +42,8 @@ std::string parameter_help() {
          "clusters = 256            size of each factor's codebook, 1 to 256\n"
          "difference_rings = 8      grid that the half factor averages over: N x 2 N differences\n"
          "factors = light,half,view also light,view: the chain without the half factor\n"
-         "rank_one = weighted       what the light and view factors fit: weighted: B, as it is "
-         "seen; "
-         "plain: f / Q, the paper's SVD\n"
+         "rank_one = weighted       error that light and view make least: that of B, as it is "
+         "seen; plain: of f / Q (the paper)\n"
          "refine = 0                rounds that alternate over all factors after the chain\n"
          "refit_scale = true        solve the scale map again after clustering and quantisation\n"
          "resolution = 32           texels a side of each parabolic map, 2 to 256\n"
