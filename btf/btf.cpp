@@ -3,11 +3,27 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "btf/error.h"
 
 namespace weft {
+
+namespace {
+
+constexpr float largest_half = 65504.0F;
+
+// One sample that may not be stored, for the message.
+std::string sample_name(std::size_t index, std::size_t view, int width, int height) {
+  const std::size_t texel = index / 3;
+  const auto row = static_cast<std::size_t>(width);
+  const std::size_t texels = row * height;
+  return fmt::format("view {}, light {}, texel ({}, {})", view, texel / texels,
+                     texel % texels % row, texel % texels / row);
+}
+
+}  // namespace
 
 Btf::Btf(int width, int height, HemisphereSampling views, HemisphereSampling lights, PixelType type)
     : width_(width),
@@ -42,6 +58,37 @@ void Btf::set(std::size_t light, std::size_t view, int x, int y, const Rgb& valu
   }
 }
 
+void Btf::set_view(std::size_t view, std::span<const float> values) {
+  const std::size_t count = 3 * static_cast<std::size_t>(width_) * height_ * lights_.size();
+  if (values.size() != count) {
+    throw bad_input(fmt::format("view {}", view),
+                    fmt::format("has {} values; expected {}", values.size(), count));
+  }
+  check_storable(view, values, width_, height_, type_);
+  std::size_t i = 0;
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    for (int y = 0; y < height_; ++y) {
+      for (int x = 0; x < width_; ++x, i += 3) {
+        set(l, view, x, y, Rgb(values[i], values[i + 1], values[i + 2]));
+      }
+    }
+  }
+}
+
+std::vector<float> Btf::view_values(std::size_t view) const {
+  std::vector<float> values;
+  values.reserve(3 * static_cast<std::size_t>(width_) * height_ * lights_.size());
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    for (int y = 0; y < height_; ++y) {
+      for (int x = 0; x < width_; ++x) {
+        const Rgb value = at(l, view, x, y);
+        values.insert(values.end(), {value.x, value.y, value.z});
+      }
+    }
+  }
+  return values;
+}
+
 void Btf::abrdf(int x, int y, std::span<float> values) const {
   const std::size_t first = offset(0, 0, x, y);
   if (type_ == PixelType::half) {
@@ -49,6 +96,33 @@ void Btf::abrdf(int x, int y, std::span<float> values) const {
   } else {
     std::copy_n(floats_.begin() + static_cast<std::ptrdiff_t>(first), values.size(),
                 values.begin());
+  }
+}
+
+void check_storable(std::size_t view, std::span<const float> values, int width, int height,
+                    PixelType type) {
+  std::size_t invalid = 0;
+  std::size_t first_invalid = 0;
+  std::size_t overflowing = 0;
+  std::size_t worst = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] >= 0) || std::isinf(values[i])) {
+      if (invalid++ == 0) first_invalid = i;
+    } else if (values[i] > largest_half) {
+      ++overflowing;
+      if (values[i] > values[worst] || overflowing == 1) worst = i;
+    }
+  }
+  if (invalid > 0) {
+    throw bad_input(sample_name(first_invalid, view, width, height),
+                    fmt::format("is {}, and {} values in all are not finite and >= 0",
+                                values[first_invalid], invalid));
+  }
+  if (overflowing > 0 && type == PixelType::half) {
+    throw bad_input(sample_name(worst, view, width, height),
+                    fmt::format("is {}, and {} values in all are above {}, the largest half",
+                                values[worst], overflowing, largest_half),
+                    "store floats: --pixel float");
   }
 }
 

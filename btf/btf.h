@@ -11,7 +11,7 @@
 
 namespace weft {
 
-/// What a stored number is. The cosine of the light is in `btf` and not in `brdf`.
+/// What a stored number is.
 enum class PixelType { half, float32 };
 
 /// W x H texels x views x lights of RGB, in half or float. Row 0 is the top (v near 1).
@@ -32,6 +32,11 @@ class Btf {
   /// B of one sample in 1/sr.
   Rgb at(std::size_t light, std::size_t view, int x, int y) const;
   void set(std::size_t light, std::size_t view, int x, int y, const Rgb& value);
+
+  /// All values of one view, [light][y][x][rgb], lights x height x width x 3 of them. Views may be
+  /// set side by side. @throws Error  for another count, or as `check_storable`.
+  void set_view(std::size_t view, std::span<const float> values);
+  std::vector<float> view_values(std::size_t view) const;
 
   /// Values of one texel in floats: [view][light][rgb], views x lights x 3 of them.
   void abrdf(int x, int y, std::span<float> values) const;
@@ -64,5 +69,11 @@ class Btf {
   std::vector<half> halfs_;
   std::vector<float> floats_;
 };
+
+/// @param values  one view's, [light][y][x][rgb].
+/// @throws Error  naming a sample, where a value is NaN, infinite or negative, or overflows a half
+/// (count and the worst sample).
+void check_storable(std::size_t view, std::span<const float> values, int width, int height,
+                    PixelType type);
 
 }  // namespace weft

@@ -3,9 +3,6 @@
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -22,7 +19,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr int file_version = 1;
-constexpr float largest_half = 65504.0F;
 
 std::string pixel_type_name(PixelType type) {
   return type == PixelType::half ? "half" : "float";
@@ -33,41 +29,6 @@ Json parse(const fs::path& path) {
     return Json::parse(read_text(path));
   } catch (const Json::exception& error) {
     throw bad_input(path.string(), std::string("is not JSON: ") + error.what());
-  }
-}
-
-// One sample that may not be stored, for the message.
-std::string sample_name(std::size_t index, std::size_t view, const BtfHeader& header) {
-  const std::size_t texel = index / 3;
-  const auto width = static_cast<std::size_t>(header.width);
-  const std::size_t texels = width * header.height;
-  return fmt::format("view {}, light {}, texel ({}, {})", view, texel / texels,
-                     texel % texels % width, texel % texels / width);
-}
-
-void check_values(std::size_t view, const BtfHeader& header, std::span<const float> values) {
-  std::size_t invalid = 0;
-  std::size_t first_invalid = 0;
-  std::size_t overflowing = 0;
-  std::size_t worst = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i] >= 0) || std::isinf(values[i])) {
-      if (invalid++ == 0) first_invalid = i;
-    } else if (values[i] > largest_half) {
-      ++overflowing;
-      if (values[i] > values[worst] || overflowing == 1) worst = i;
-    }
-  }
-  if (invalid > 0) {
-    throw bad_input(sample_name(first_invalid, view, header),
-                    fmt::format("is {}, and {} values in all are not finite and >= 0",
-                                values[first_invalid], invalid));
-  }
-  if (overflowing > 0 && header.pixel_type == PixelType::half) {
-    throw bad_input(sample_name(worst, view, header),
-                    fmt::format("is {}, and {} values in all are above {}, the largest half",
-                                values[worst], overflowing, largest_half),
-                    "store floats: --pixel float");
   }
 }
 
@@ -102,7 +63,7 @@ bool BtfWriter::has_view(std::size_t view) const {
 
 void BtfWriter::write_view(std::size_t view, std::span<const float> values,
                            std::span<const float> standard_errors) {
-  check_values(view, header_, values);
+  check_storable(view, values, header_.width, header_.height, header_.pixel_type);
   const ViewFileHeader file{header_.width, header_.height, header_.pixel_type, header_.views[view],
                             header_.provenance};
   write_atomically(view_path(view), [&](const fs::path& path) {
@@ -184,16 +145,8 @@ Btf read_btf(const fs::path& folder) {
   btf.provenance = header.provenance;
   // Views are independent, and no two write to the same values.
   tbb::parallel_for(std::size_t{0}, header.views.size(), [&](std::size_t v) {
-    const std::vector<float> values = read_view_values(folder / view_file_name(v), header.width,
-                                                       header.height, header.lights.size());
-    std::size_t i = 0;
-    for (std::size_t l = 0; l < header.lights.size(); ++l) {
-      for (int y = 0; y < header.height; ++y) {
-        for (int x = 0; x < header.width; ++x, i += 3) {
-          btf.set(l, v, x, y, Rgb(values[i], values[i + 1], values[i + 2]));
-        }
-      }
-    }
+    btf.set_view(v, read_view_values(folder / view_file_name(v), header.width, header.height,
+                                     header.lights.size()));
   });
   return btf;
 }
@@ -208,19 +161,7 @@ void write_btf(const fs::path& folder, const Btf& btf) {
                    .provenance = btf.provenance,
                    .standard_errors = {}};
   BtfWriter writer(folder, std::move(header));
-  std::vector<float> values;
-  for (std::size_t v = 0; v < btf.views().size(); ++v) {
-    values.clear();
-    for (std::size_t l = 0; l < btf.lights().size(); ++l) {
-      for (int y = 0; y < btf.height(); ++y) {
-        for (int x = 0; x < btf.width(); ++x) {
-          const Rgb value = btf.at(l, v, x, y);
-          values.insert(values.end(), {value.x, value.y, value.z});
-        }
-      }
-    }
-    writer.write_view(v, values);
-  }
+  for (std::size_t v = 0; v < btf.views().size(); ++v) writer.write_view(v, btf.view_values(v));
   writer.finish();
 }
 

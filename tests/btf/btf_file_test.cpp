@@ -111,6 +111,32 @@ TEST_CASE("values that may not be stored are refused with their place") {
   CHECK(std::filesystem::is_empty(folder.path / "a.btf"));
 }
 
+TEST_CASE("a view in memory comes back, and takes only what can be stored") {
+  Btf btf = random_btf(PixelType::half);
+  const std::vector<float> old = btf.view_values(2);
+  REQUIRE(old.size() == 3 * 6 * 8);
+  const std::size_t sample = 3 * (5 * 6 + 4);  // light 5, texel (1, 1)
+  CHECK(Rgb(old[sample], old[sample + 1], old[sample + 2]) == btf.at(5, 2, 1, 1));
+  std::vector<float> values(old.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
+  btf.set_view(3, values);
+  CHECK(btf.view_values(3) == values);
+  CHECK(btf.view_values(2) == old);
+  CHECK_THROWS_WITH(btf.set_view(0, std::span(values).first(12)), Catch::Contains("144"));
+  values[sample] = 70000;
+  CHECK_THROWS_WITH(btf.set_view(1, values), Catch::Contains("view 1, light 5, texel (1, 1)") &&
+                                                 Catch::Contains("--pixel float"));
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1.0F}) {
+    values[sample] = bad;
+    CHECK_THROWS_AS(btf.set_view(1, values), Error);
+  }
+  values[sample] = 70000;
+  Btf floats = random_btf(PixelType::float32);
+  floats.set_view(1, values);
+  CHECK(floats.at(5, 1, 1, 1).x == 70000);
+}
+
 TEST_CASE("damaged datasets are named") {
   const TemporaryFolder folder;
   const auto path = folder.path / "a.btf";
