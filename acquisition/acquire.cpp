@@ -1,13 +1,15 @@
 #include "acquisition/acquire.h"
 
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
-#include <atomic>
+#include <bit>
 #include <chrono>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "btf/btf_file.h"
+#include "btf/random.h"
 
 namespace weft {
 
@@ -29,6 +31,17 @@ ViewTracer tracer_for(const Mesostructure& mesostructure, const AcquisitionSetti
   return {mesostructure, {lights.directions().begin(), lights.directions().end()}, settings.trace};
 }
 
+// A set's name; for a file its content instead, since a path says nothing of what was traced.
+std::string directions_record(const std::string& name) {
+  if (!name.starts_with("file:")) return name;
+  std::uint64_t hash = 0;
+  for (const Direction& d : named_directions(name)) {
+    hash = hash_coordinates(hash, std::bit_cast<std::uint32_t>(d.x),
+                            std::bit_cast<std::uint32_t>(d.y), std::bit_cast<std::uint32_t>(d.z));
+  }
+  return fmt::format("file of hash {:016x}", hash);
+}
+
 }  // namespace
 
 std::string provenance_of(const Mesostructure& mesostructure, const AcquisitionSettings& settings) {
@@ -36,8 +49,9 @@ std::string provenance_of(const Mesostructure& mesostructure, const AcquisitionS
                          {"texels", {settings.trace.width, settings.trace.height}},
                          {"spp", settings.trace.spp},
                          {"seed", settings.trace.seed},
-                         {"views", settings.views},
-                         {"lights", settings.lights}};
+                         {"pixel", settings.pixel_type == PixelType::half ? "half" : "float"},
+                         {"views", directions_record(settings.views)},
+                         {"lights", directions_record(settings.lights)}};
   if (settings.trace.max_bounces == TraceSettings::unlimited)
     json["max_bounces"] = "unlimited";
   else
@@ -57,6 +71,7 @@ AcquisitionReport acquire(const Mesostructure& mesostructure, const AcquisitionS
     if (!writer.has_view(v)) missing.push_back(v);
   }
   AcquisitionReport report;
+  report.lights = header.lights.size();
   report.views_kept = header.views.size() - missing.size();
   std::mutex mutex;
   progress.start(static_cast<std::int64_t>(missing.size()), "views");

@@ -21,6 +21,7 @@ struct AcquisitionReport {
   TraceStatistics statistics;
   double seconds = 0;          ///< tracing and writing
   std::size_t views_kept = 0;  ///< were there already
+  std::size_t lights = 0;
 };
 
 /// Traces every view that `folder` does not hold yet, and finishes the dataset. The same settings

@@ -16,7 +16,7 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 // More copies serve more rays in packets; fewer keep large meshes in memory.
 constexpr std::size_t triangles_for_wide_reach = 1'000'000;
-constexpr int max_tiles_wide = 100;
+constexpr int max_tiles_wide = 8;
 // A ray that goes on begins this much before where it left, so that no surface falls between.
 constexpr float step_back = 1e-5F;
 // A ray still travelling after this many tiles runs level between the structure's heights for good.
@@ -81,11 +81,6 @@ RayScene scene_of(const TriangleMesh& mesh, int reach) {
   return RayScene(pointers);
 }
 
-float fraction(float x) {
-  const float f = x - std::floor(x);
-  return f < 1 ? f : 0;
-}
-
 Vec3 origin_of(const RayStream& rays, std::size_t i) {
   return {rays.ox[i], rays.oy[i], rays.oz[i]};
 }
@@ -136,8 +131,8 @@ std::int64_t PeriodicScene::trace_on(RayStream& rays, std::size_t i) const {
   std::int64_t traced = 0;
   while (end.sideways && traced < max_moves) {
     origin += direction * std::max(0.0F, end.distance - step_back);
-    origin.x = fraction(origin.x);
-    origin.y = fraction(origin.y);
+    origin.x = tile_fraction(origin.x);
+    origin.y = tile_fraction(origin.y);
     end = exit(origin, direction);
     ++traced;
     const RayHit hit = scene_.intersect(origin, direction, 0, end.distance);

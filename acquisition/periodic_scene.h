@@ -5,12 +5,19 @@
 // structure.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "tracer/ray_scene.h"
 #include "tracer/triangle_mesh.h"
 
 namespace weft {
+
+/// The place of a coordinate within its tile, in [0, 1).
+inline float tile_fraction(float x) {
+  const float f = x - std::floor(x);
+  return f < 1 ? f : 0;
+}
 
 class PeriodicScene {
  public:

@@ -20,7 +20,7 @@ struct TraceSettings {
   int width = 64;  ///< texels
   int height = 64;
   int spp = 64;         ///< eye paths a (view, texel)
-  int max_bounces = 8;  ///< reflections after the first; 0 is direct light
+  int max_bounces = 8;  ///< reflections after the first, to 4,096; 0 is direct light
   std::uint64_t seed = 0;
 };
 
@@ -34,6 +34,8 @@ struct TraceStatistics {
   std::int64_t missed = 0;          ///< paths whose first ray met nothing
   std::int64_t trapped =
       0;  ///< paths ended after 4,096 bounces: inside a closed surface, most likely
+  std::int64_t invalid =
+      0;  ///< directions drawn with a density that is not a number, where a path ends
   std::int64_t degenerate = 0;  ///< hits on triangles without an area, where a path ends
 
   std::int64_t rays() const { return primary_rays + bounce_rays + shadow_rays + rays_traced_on; }
@@ -63,9 +65,9 @@ class ViewTracer {
   const TraceSettings& settings() const { return settings_; }
   const Mesostructure& mesostructure() const { return mesostructure_; }
 
- private:
-  class Block;
+  const PeriodicScene& scene() const { return scene_; }
 
+ private:
   Mesostructure mesostructure_;
   std::vector<Direction> lights_;
   TraceSettings settings_;

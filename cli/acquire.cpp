@@ -54,10 +54,9 @@ AcquisitionSettings settings_of(const Options& options, const Session& session) 
   if (options.spp < 1)
     throw bad_input("--spp", fmt::format("is {}; expected at least 1", options.spp));
   settings.trace.spp = options.spp;
-  settings.trace.max_bounces =
-      options.max_bounces == "unlimited"
-          ? TraceSettings::unlimited
-          : whole_number("--max-bounces", options.max_bounces, 0, 1'000'000);
+  settings.trace.max_bounces = options.max_bounces == "unlimited"
+                                   ? TraceSettings::unlimited
+                                   : whole_number("--max-bounces", options.max_bounces, 0, 4096);
   settings.trace.seed = session.seed;
   settings.views = options.views.empty() ? options.directions : options.views;
   settings.lights = options.lights.empty() ? options.directions : options.lights;
@@ -86,7 +85,7 @@ void write_run(const std::filesystem::path& folder, const Session& session) {
 void report(const AcquisitionReport& result, const AcquisitionSettings& settings,
             const Options& options, Session& session) {
   const TraceStatistics& s = result.statistics;
-  const double lights = static_cast<double>(named_directions(settings.lights).size());
+  const auto lights = static_cast<double>(result.lights);
   const double rays_per_second =
       result.seconds > 0 ? static_cast<double>(s.rays()) / result.seconds : 0;
   const double samples_per_second =
@@ -106,12 +105,15 @@ void report(const AcquisitionReport& result, const AcquisitionSettings& settings
                       {"samples_per_second", samples_per_second},
                       {"missed_percent", missed},
                       {"degenerate_hits", s.degenerate},
-                      {"trapped_paths", s.trapped}};
+                      {"trapped_paths", s.trapped},
+                      {"invalid_samples", s.invalid}};
   session.say(fmt::format("{}: {:.1f} s, {:.3g} rays/s, {:.3g} samples/s (texel x pair x spp)",
                           options.output, result.seconds, rays_per_second, samples_per_second));
   if (result.views_kept > 0)
     session.say(fmt::format("{} views were there already", result.views_kept));
   if (missed > 0) session.say(fmt::format("{:.2g} % of rays met nothing: add a floor", missed));
+  if (s.invalid > 0)
+    session.say(fmt::format("{} paths ended on a density that is not a number", s.invalid));
   if (s.trapped > 0) session.say(fmt::format("{} paths never left the structure", s.trapped));
   if (s.degenerate > 0) {
     session.say(fmt::format("{} paths ended on triangles without an area", s.degenerate));
@@ -151,7 +153,7 @@ void add_acquire(CLI::App& app, Session& session) {
       ->capture_default_str();
   command
       ->add_option("--max-bounces", options->max_bounces,
-                   "Reflections after the first: 0 is direct light; or unlimited")
+                   "Reflections after the first, to 4096: 0 is direct light; or unlimited")
       ->capture_default_str();
   command->add_option("--pixel", options->pixel, "half or float")
       ->capture_default_str()

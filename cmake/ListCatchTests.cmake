@@ -37,6 +37,7 @@ foreach(name IN LISTS all)
   string(APPEND text
     "add_test([==[${FOLDER}: ${name}]==] [==[${PROGRAM}]==] [==[${spec}]==])\n"
     "set_tests_properties([==[${FOLDER}: ${name}]==] PROPERTIES TIMEOUT ${timeout} LABELS \"${labels}\""
+    " SKIP_REGULAR_EXPRESSION skipped:"
     " ENVIRONMENT [==[${ENVIRONMENT}]==])\n")
 endforeach()
 file(WRITE ${OUTPUT} "${text}")
