@@ -98,15 +98,7 @@ Btf acquire(const Mesostructure& mesostructure, const AcquisitionSettings& setti
   btf.tile_size = header.tile_size;
   btf.provenance = header.provenance;
   for (std::size_t v = 0; v < header.views.size(); ++v) {
-    const TracedView view = tracer.trace(header.views[v], v);
-    std::size_t i = 0;
-    for (std::size_t l = 0; l < header.lights.size(); ++l) {
-      for (int y = 0; y < header.height; ++y) {
-        for (int x = 0; x < header.width; ++x, i += 3) {
-          btf.set(l, v, x, y, Rgb(view.values[i], view.values[i + 1], view.values[i + 2]));
-        }
-      }
-    }
+    btf.set_view(v, tracer.trace(header.views[v], v).values);
   }
   return btf;
 }

@@ -22,6 +22,13 @@ constexpr float step_back = 1e-5F;
 // A ray still travelling after this many tiles runs level between the structure's heights for good.
 constexpr int max_moves = 1'000'000;
 
+bool has_area(const TriangleMesh& mesh) {
+  return std::ranges::any_of(mesh.triangles, [&](const auto& t) {
+    const Vec3& a = mesh.positions[t[0]];
+    return ((mesh.positions[t[1]] - a) % (mesh.positions[t[2]] - a)).length2() > 0;
+  });
+}
+
 struct Bounds {
   Vec3 low{infinity, infinity, infinity};
   Vec3 high{-infinity, -infinity, -infinity};
@@ -29,6 +36,7 @@ struct Bounds {
 
 Bounds bounds_of(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw bad_input("mesostructure", "has no triangles");
+  if (!has_area(mesh)) throw bad_input("mesostructure", "has no triangle with an area");
   Bounds bounds;
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) {

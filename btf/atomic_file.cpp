@@ -6,10 +6,13 @@
 #include <xxhash.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <system_error>
+#include <vector>
 
 #include "btf/error.h"
 
@@ -67,6 +70,20 @@ void write_text_atomically(const fs::path& path, std::string_view text) {
     out.close();
     if (!out) throw failed(path.string(), "cannot be written: " + reason(errno));
   });
+}
+
+void remove_abandoned(const fs::path& folder) {
+  static const std::regex name(R"(\..*\.part([0-9]{1,9})(\..*)?)");
+  std::vector<fs::path> abandoned;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string file = entry.path().filename().string();
+    std::smatch match;
+    if (!std::regex_match(file, match, name)) continue;
+    const bool alive = kill(std::stoi(match[1].str()), 0) == 0 || errno != ESRCH;
+    if (!alive) abandoned.push_back(entry.path());
+  }
+  std::error_code ignored;
+  for (const fs::path& path : abandoned) fs::remove(path, ignored);
 }
 
 std::string read_text(const fs::path& path) {

@@ -18,6 +18,10 @@ void write_atomically(const std::filesystem::path& path,
 /// The same for a text.
 void write_text_atomically(const std::filesystem::path& path, std::string_view text);
 
+/// Removes what killed processes left beside files that they were writing in `folder`; what a
+/// living process of this machine writes stays.
+void remove_abandoned(const std::filesystem::path& folder);
+
 /// Whole contents. @throws Error bad_input, naming `path`, where it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 

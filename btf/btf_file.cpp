@@ -32,6 +32,16 @@ Json parse(const fs::path& path) {
   }
 }
 
+// A view that is whole but another one than the description was written for.
+void check_checksum(const fs::path& path, const Json& checksums) {
+  const std::string name = path.filename().string();
+  if (!fs::exists(path)) throw bad_input(path.string(), "is missing");
+  if (!checksums.contains(name) || file_checksum(path) != checksums.at(name)) {
+    throw bad_input(path.string(), "is not the file that btf.json tells of: its checksum differs",
+                    "`weft validate` lists all that differ; copy or trace the dataset again");
+  }
+}
+
 }  // namespace
 
 std::string view_file_name(std::size_t view) {
@@ -43,6 +53,7 @@ BtfWriter::BtfWriter(fs::path folder, BtfHeader header)
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw failed(folder_.string(), "cannot be created: " + error.message());
+  remove_abandoned(folder_);
   for (const auto& entry : fs::directory_iterator(folder_)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with("view_") || entry.path().extension() != ".exr") continue;
@@ -143,8 +154,10 @@ Btf read_btf(const fs::path& folder) {
   Btf btf(header.width, header.height, header.views, header.lights, header.pixel_type);
   btf.tile_size = header.tile_size;
   btf.provenance = header.provenance;
+  const Json checksums = parse(folder / "btf.json").at("xxh3_128");
   // Views are independent, and no two write to the same values.
   tbb::parallel_for(std::size_t{0}, header.views.size(), [&](std::size_t v) {
+    check_checksum(folder / view_file_name(v), checksums);
     btf.set_view(v, read_view_values(folder / view_file_name(v), header.width, header.height,
                                      header.lights.size()));
   });

@@ -111,7 +111,7 @@ void report(const AcquisitionReport& result, const AcquisitionSettings& settings
                           options.output, result.seconds, rays_per_second, samples_per_second));
   if (result.views_kept > 0)
     session.say(fmt::format("{} views were there already", result.views_kept));
-  if (missed > 0) session.say(fmt::format("{:.2g} % of rays met nothing: add a floor", missed));
+  if (missed > 0) session.say(fmt::format("{:.2f} % of rays met nothing: add a floor", missed));
   if (s.invalid > 0)
     session.say(fmt::format("{} paths ended on a density that is not a number", s.invalid));
   if (s.trapped > 0) session.say(fmt::format("{} paths never left the structure", s.trapped));

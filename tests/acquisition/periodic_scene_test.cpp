@@ -72,6 +72,10 @@ TEST_CASE("level rays meet what a wide patch of copies has in their way") {
   CHECK(different <= 2);  // grazing the rim of a triangle, where rounding decides
 }
 
-TEST_CASE("a tile without triangles is refused") {
+TEST_CASE("a tile without triangles is refused, and one whose triangles have no area") {
+  TriangleMesh line;
+  line.positions = {{0, 0, 0}, {0.5F, 0, 0}, {1, 0, 0}};
+  line.triangles = {{0, 1, 2}};
+  CHECK_THROWS_WITH(PeriodicScene(line), Catch::Contains("no triangle with an area"));
   CHECK_THROWS_WITH(PeriodicScene(TriangleMesh{}), Catch::Contains("no triangles"));
 }

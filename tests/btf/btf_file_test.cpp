@@ -141,6 +141,11 @@ TEST_CASE("damaged datasets are named") {
   const TemporaryFolder folder;
   const auto path = folder.path / "a.btf";
   write_btf(path, random_btf(PixelType::half));
+  std::filesystem::copy_file(path / "view_001.exr", path / "view_000.exr",
+                             std::filesystem::copy_options::overwrite_existing);
+  CHECK_THROWS_WITH(read_btf(path), Catch::Contains("view_000.exr") && Catch::Contains("checksum"));
+  std::filesystem::remove_all(path);
+  write_btf(path, random_btf(PixelType::half));
   std::filesystem::resize_file(path / "view_002.exr", 2000);
   CHECK(corrupted_files(path) == std::vector<std::string>{"view_002.exr"});
   CHECK_THROWS_WITH(read_btf(path), Catch::Contains("view_002.exr"));
