@@ -62,6 +62,7 @@ void write_map(const Options& options, const Image& reference, const Image& test
 }
 
 void compare(const Options& options, Session& session) {
+  if (!options.map.empty()) check_image_path(options.map);
   const Image reference = read_image(options.reference, Encoding::colour);
   const Image test = read_image(options.test, Encoding::colour);
   const ImageDifference difference =

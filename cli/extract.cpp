@@ -92,6 +92,7 @@ Rgb mean_of(const Image& image) {
 void extract(const Options& options, Session& session) {
   const Direction view = parse_direction("--view", options.view);
   const Direction light = parse_direction("--light", options.light);
+  check_image_path(options.output);
   const auto tile = open_representation(options.input);
   if (options.lod > 0 && !tile->has_lod()) {
     throw bad_input("--lod", fmt::format("the codec {} holds level 0 only", tile->codec()));

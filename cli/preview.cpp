@@ -42,8 +42,9 @@ void set_size(Camera& camera, const std::string& text) {
   int height = 0;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 ||
-      height < 1) {
-    throw bad_input("--size", "'" + text + "' is not WIDTHxHEIGHT, such as 800x600");
+      height < 1 || width > 16384 || height > 16384) {
+    throw bad_input("--size", "'" + text + "' is not a size",
+                    "write WIDTHxHEIGHT, each from 1 to 16384, such as 800x600");
   }
   camera.width = width;
   camera.height = height;
@@ -132,6 +133,8 @@ void preview_in_window(const PreviewArguments& arguments, Session& session) {
 void preview(const PreviewArguments& arguments, Session& session) {
   session.measured["command"] = "preview";
   session.measured["scene"] = arguments.scene.string();
+  if (!arguments.output.empty()) check_image_path(arguments.output);
+  if (!arguments.screenshot.empty()) check_image_path(arguments.screenshot);
   if (!arguments.headless) return preview_in_window(arguments, session);
   if (arguments.output.empty()) {
     throw bad_input("--headless", "has no file to draw to", "add -o FILE.exr");

@@ -122,6 +122,8 @@ void run(Options& options, Session& session) {
   options.settings.filter = filters.at(options.filter);
   options.settings.shadows = !options.no_shadows;
   options.settings.seed = session.seed;
+  check_image_path(options.output);
+  if (!options.variance.empty()) check_image_path(options.variance);
   const Scene scene =
       read_scene(options.scene, open_datasets(), btf_paths(options.btfs), options.overrides);
   Progress progress("render", session.quiet || session.json);

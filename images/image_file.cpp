@@ -152,6 +152,15 @@ Image read_image(const fs::path& path, Encoding encoding) {
   return is_cropped(spec) ? in_display_window(image, spec) : image;
 }
 
+void check_image_path(const fs::path& path) {
+  if (fs::is_directory(path)) throw bad_input(path.string(), "is a folder, expected a picture");
+  const fs::path folder = path.parent_path();
+  if (!folder.empty() && !fs::is_directory(folder)) {
+    throw bad_input(path.string(), "cannot be written: there is no folder " + folder.string());
+  }
+  writer_for(path);
+}
+
 void write_image(const fs::path& path, const Image& image, Encoding encoding) {
   const bool floats = holds_floats(path);
   if (image.width <= 0 || image.height <= 0 || image.channels <= 0) {
@@ -159,7 +168,7 @@ void write_image(const fs::path& path, const Image& image, Encoding encoding) {
                     fmt::format("a picture of {} x {} pixels and {} channels cannot be written",
                                 image.width, image.height, image.channels));
   }
-  writer_for(path);
+  check_image_path(path);
   if (!floats) refuse_nan(path, image);
 
   const OIIO::ImageSpec spec = output_spec(image, floats);

@@ -16,6 +16,11 @@ enum class Encoding { linear, colour };
 /// @throws Error  naming the file and why (missing, truncated, unknown format).
 Image read_image(const std::filesystem::path& path, Encoding encoding);
 
+/// To be asked before minutes of work whose picture goes to `path`.
+/// @throws Error  bad_input, where its folder is not there, it is a folder itself, or its extension
+///                is of no format that can be written.
+void check_image_path(const std::filesystem::path& path);
+
 /// Format by extension. `.exr` and `.hdr` hold linear floats; `.png`, `.jpg` and other 8-bit
 /// formats are sRGB-encoded with `Encoding::colour` and raw bytes (value * 255, rounded) with
 /// `Encoding::linear`. Written aside and renamed. @throws Error naming the file.

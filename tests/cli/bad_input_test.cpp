@@ -130,3 +130,31 @@ TEST_CASE("render and preview refuse bad scenes") {
   mistakes.refused({"render", "scene.toml", "--btf", "small.btf", "-o", "a.exr", "--spp", "0"},
                    {"--spp", "0"});
 }
+
+TEST_CASE("A picture that cannot be written is refused before the work") {
+  const Mistakes mistakes;
+  const std::vector<std::vector<std::string>> commands = {
+      {"render", "scene.toml", "-o"},
+      {"render", "scene.toml", "-o", "a.exr", "--variance"},
+      {"preview", "--headless", "scene.toml", "-o"},
+      {"preview", "scene.toml", "--screenshot"},
+      {"extract", "nothing.btf", "--view", "0,0", "--light", "0,0", "-o"},
+      {"compare", "nothing.exr", "nothing.exr", "--map"}};
+  for (const std::vector<std::string>& command : commands) {
+    const auto refused = [&](const std::string& path, const std::string& word) {
+      std::vector<std::string> arguments = command;
+      arguments.push_back(path);
+      mistakes.refused(arguments, {"weft: " + path + ": ", word});
+    };
+    refused("nodir/a.exr", "nodir");
+    refused("a.exx", "exx");
+    refused("small.btf", "folder");
+  }
+}
+
+TEST_CASE("preview refuses a size that no picture has") {
+  const Mistakes mistakes;
+  mistakes.refused({"preview", "--headless", "scene.toml", "--btf", "small.btf", "-o", "a.exr",
+                    "--size", "9999999x2"},
+                   {"--size", "9999999x2", "16384"});
+}
