@@ -60,20 +60,22 @@ Estimate estimate(const Mesostructure& structure, const std::vector<Direction>& 
 template <typename Shifted>
 void check_equal(const Estimate& a, const Estimate& b, const Shifted& shifted) {
   double z2 = 0;
-  double sum_a = 0;
-  double sum_b = 0;
+  double difference = 0;
+  double variance = 0;
   std::size_t outside = 0;
   for (std::size_t i = 0; i < a.mean.size(); ++i) {
     const std::size_t j = shifted(i);
     const double z = (a.mean[i] - b.mean[j]) / std::sqrt(a.variance[i] + b.variance[j] + 1e-16);
     outside += std::abs(z) > 5 ? 1 : 0;
     z2 += std::min(z * z, 25.0) / static_cast<double>(a.mean.size());
-    sum_a += a.mean[i];
-    sum_b += b.mean[i];
+    difference += a.mean[i] - b.mean[j];
+    variance += a.variance[i] + b.variance[j];
   }
   CHECK(static_cast<double>(outside) <= 0.001 * static_cast<double>(a.mean.size()));
   CHECK(z2 < 1.4);
-  CHECK(sum_a == Approx(sum_b).epsilon(2e-3));
+  // The whole picture: channels and the two lights share paths, so their errors may add up, six
+  // alike.
+  CHECK(std::abs(difference) < 4 * std::sqrt(6 * variance));
 }
 
 // The tile's mean integrated over fibonacci:1024 lights, at every view. The lights are dealt to 16
