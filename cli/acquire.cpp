@@ -82,8 +82,7 @@ void write_run(const std::filesystem::path& folder, const Session& session) {
   write_text_atomically(folder / "run.json", run.dump(1) + "\n");
 }
 
-void report(const AcquisitionReport& result, const AcquisitionSettings& settings,
-            const Options& options, Session& session) {
+void report(const AcquisitionReport& result, const Options& options, Session& session) {
   const TraceStatistics& s = result.statistics;
   const auto lights = static_cast<double>(result.lights);
   const double rays_per_second =
@@ -125,7 +124,7 @@ void run(const Options& options, Session& session) {
   const Mesostructure mesostructure = read_mesostructure(options.mesostructure, options.set);
   Progress progress("acquire", session.quiet || session.json);
   const AcquisitionReport result = acquire(mesostructure, settings, options.output, progress);
-  report(result, settings, options, session);
+  report(result, options, session);
   write_run(options.output, session);
 }
 
