@@ -46,6 +46,19 @@ void sync(const fs::path& path, const fs::path& final_path) {
 
 }  // namespace
 
+void sync_folder(const fs::path& folder) {
+  const fs::path name = folder.empty() ? fs::path(".") : folder;
+  const int file = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;  // one that may be written to and not be read
+  const int result = fsync(file);
+  const int code = errno;
+  close(file);
+  // Some network file systems cannot sync a folder, and say EINVAL.
+  if (result != 0 && code != EINVAL) {
+    throw failed(name.string(), "cannot be synced: " + reason(code));
+  }
+}
+
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   const fs::path temporary = aside(path);
   std::error_code ignored;
@@ -53,6 +66,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     write(temporary);
     sync(temporary, path);
     fs::rename(temporary, path);
+    sync_folder(path.parent_path());
   } catch (const fs::filesystem_error& error) {
     fs::remove(temporary, ignored);
     throw failed(path.string(), "cannot be written: " + error.code().message());

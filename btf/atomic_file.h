@@ -9,9 +9,12 @@
 
 namespace weft {
 
-/// Calls `write` with a temporary path in the same folder, syncs what it wrote, and renames it to
-/// `path`. Nothing is left where `write` throws. @throws Error failed, naming `path`, where the
-/// disk refuses.
+/// Lasting on disk: the names in a folder, after a rename. @throws Error failed.
+void sync_folder(const std::filesystem::path& folder);
+
+/// Calls `write` with a temporary path in the same folder, syncs what it wrote, renames it to
+/// `path`, and syncs the folder. Nothing is left where `write` throws. @throws Error failed, naming
+/// `path`, where the disk refuses.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 

@@ -75,11 +75,9 @@ bool BtfWriter::has_view(std::size_t view) const {
 void BtfWriter::write_view(std::size_t view, std::span<const float> values,
                            std::span<const float> standard_errors) {
   check_storable(view, values, header_.width, header_.height, header_.pixel_type);
-  const ViewFileHeader file{header_.width, header_.height, header_.pixel_type, header_.views[view],
-                            header_.provenance};
-  write_atomically(view_path(view), [&](const fs::path& path) {
-    write_view_file(path, file, header_.lights.directions(), values, standard_errors);
-  });
+  const ViewFileHeader file{header_.width, header_.height, header_.pixel_type, header_.provenance};
+  write_view_file(view_path(view), file, header_.views[view], header_.lights.directions(), values,
+                  standard_errors);
 }
 
 void BtfWriter::finish() {

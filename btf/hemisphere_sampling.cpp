@@ -111,6 +111,10 @@ void HemisphereSampling::prepare() {
 
 void HemisphereSampling::fill_grid() {
   if (triangles_.empty()) return;
+  if (triangles_.size() >= Tables::hull_flag) {
+    throw bad_input("triangles", fmt::format("{} triangles; expected at most {}", triangles_.size(),
+                                             Tables::hull_flag - 1));
+  }
   std::map<std::pair<std::uint16_t, std::uint16_t>, std::uint16_t> triangle_left_of;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -123,8 +127,11 @@ void HemisphereSampling::fill_grid() {
   }
   std::map<std::uint16_t, std::uint16_t> after_on_hull;
   for (const auto& [edge, triangle] : triangle_left_of) {
-    if (!triangle_left_of.contains({edge.second, edge.first}))
-      after_on_hull[edge.first] = edge.second;
+    if (triangle_left_of.contains({edge.second, edge.first})) continue;
+    if (!after_on_hull.emplace(edge).second) {
+      throw bad_input("triangles",
+                      fmt::format("their outline passes direction {} more than once", edge.first));
+    }
   }
   std::map<std::uint16_t, std::uint16_t> hull_position;
   std::uint16_t point = after_on_hull.begin()->first;
@@ -177,6 +184,7 @@ void HemisphereSampling::fill_grid() {
 // brings.
 std::uint16_t HemisphereSampling::walk(std::uint16_t triangle, const Vec2& p,
                                        std::array<float, 3>& weight) const {
+  weight = {1, 0, 0};  // where the bound ends the walk
   for (std::size_t step = 0; step <= tables_.triangles.size(); ++step) {
     const auto& t = tables_.triangles[triangle];
     const Vec2& a = tables_.points[t[0]];
@@ -247,7 +255,9 @@ Stencil HemisphereSampling::locate(const Direction& direction) const {
   if (tables_.triangles.empty()) return nearest_stencil(direction);
   const Vec2 p = parabolic(direction);
   const auto cell = [](float coordinate) {
-    return std::clamp(static_cast<int>((coordinate + 1) * (grid_size / 2.0F)), 0, grid_size - 1);
+    const float place = (coordinate + 1) * (grid_size / 2.0F);
+    // Compared before it is cast: no cast of a NaN is defined.
+    return place > 0 ? static_cast<int>(std::min<float>(place, grid_size - 1)) : 0;
   };
   std::array<float, 3> weight;
   const std::uint16_t start =

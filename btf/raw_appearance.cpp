@@ -70,8 +70,9 @@ TexelStencil bilinear_texels(Texcoord uv, int width, int height) {
   const float fx = std::floor(x);
   const float fy = std::floor(y);
   const auto wrap = [](float i, int n) {
-    const int k = static_cast<int>(i);
-    return static_cast<std::uint32_t>(k < 0 ? k + n : k >= n ? k - n : k);
+    // i is in [-1, n], or NaN, which may not be cast; its weights are NaN and tell of it.
+    const int k = i >= 0 ? static_cast<int>(i) : n - 1;
+    return static_cast<std::uint32_t>(k >= n ? 0 : k);
   };
   const std::uint32_t x0 = wrap(fx, width);
   const std::uint32_t x1 = wrap(fx + 1, width);
@@ -115,12 +116,18 @@ Btf next_mip_level(const Btf& finer) {
   return coarse;
 }
 
-RawAppearance::RawAppearance(std::shared_ptr<const Btf> btf) : levels_{std::move(btf)} {
+std::vector<float> inverse_cosines(const HemisphereSampling& lights) {
+  std::vector<float> inverse;
+  for (const Direction& light : lights.directions()) {
+    inverse.push_back(light.z > 1e-6F ? 1 / light.z : 0);
+  }
+  return inverse;
+}
+
+RawAppearance::RawAppearance(std::shared_ptr<const Btf> btf)
+    : levels_{std::move(btf)}, inverse_cosines_(inverse_cosines(levels_[0]->lights())) {
   while (levels_.back()->width() > 1 || levels_.back()->height() > 1) {
     levels_.push_back(std::make_shared<const Btf>(next_mip_level(*levels_.back())));
-  }
-  for (const Direction& light : levels_[0]->lights().directions()) {
-    inverse_cosines_.push_back(light.z > 1e-6F ? 1 / light.z : 0);
   }
 }
 
@@ -132,7 +139,8 @@ Rgb RawAppearance::evaluate(Texcoord uv, Direction light, Direction view, float 
   for (std::size_t i = 0; i < 3; ++i) {
     light_weight[i] = lights.weight[i] * inverse_cosines_[lights.index[i]] * light.z;
   }
-  const float level = std::clamp(lod, 0.0F, static_cast<float>(levels_.size() - 1));
+  const auto last = static_cast<float>(levels_.size() - 1);
+  const float level = lod > 0 ? std::min(lod, last) : 0;  // a NaN is level 0
   const auto fine = static_cast<std::size_t>(level);
   const float blend = level - static_cast<float>(fine);
   Rgb value = evaluate_level(*levels_[fine], uv, views, lights, light_weight);

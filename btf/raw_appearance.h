@@ -26,11 +26,14 @@ class RawAppearance : public Appearance {
 
  private:
   std::vector<std::shared_ptr<const Btf>> levels_;
-  std::vector<float>
-      inverse_cosines_;  // of each light; 0 for one on the horizon, which tells nothing about f
+  std::vector<float> inverse_cosines_;
 };
 
-/// The four texels around (u, v) and their bilinear weights; repeats. `index` = y * width + x.
+/// 1 / cos(theta) of each light; 0 for one on the horizon, which tells nothing about f.
+std::vector<float> inverse_cosines(const HemisphereSampling& lights);
+
+/// The four texels around (u, v) and their bilinear weights; repeats. `index` = y * width + x. For
+/// a NaN the indices are in range and the weights NaN.
 struct TexelStencil {
   std::array<std::uint32_t, 4> index;
   std::array<float, 4> weight;

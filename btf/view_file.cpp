@@ -17,6 +17,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "btf/atomic_file.h"
 #include "btf/error.h"
 
 namespace weft {
@@ -27,21 +28,22 @@ namespace {
 
 constexpr const char* channel_names[] = {"R", "G", "B"};
 
-std::vector<Imf::Header> part_headers(const ViewFileHeader& view, std::span<const Direction> lights,
+std::vector<Imf::Header> part_headers(const ViewFileHeader& file, const Direction& view,
+                                      std::span<const Direction> lights,
                                       std::span<const float> standard_errors) {
-  const Imf::PixelType type = view.pixel_type == PixelType::half ? Imf::HALF : Imf::FLOAT;
+  const Imf::PixelType type = file.pixel_type == PixelType::half ? Imf::HALF : Imf::FLOAT;
   std::vector<Imf::Header> headers;
   for (std::size_t l = 0; l < lights.size(); ++l) {
-    Imf::Header header(view.width, view.height);
+    Imf::Header header(file.width, file.height);
     header.compression() = Imf::ZIPS_COMPRESSION;
     header.setName(fmt::format("light_{:03}", l));
     header.setType(Imf::SCANLINEIMAGE);
     for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(type));
-    header.insert("viewTheta", Imf::FloatAttribute(degrees(theta_of(view.view))));
-    header.insert("viewPhi", Imf::FloatAttribute(degrees(phi_of(view.view))));
+    header.insert("viewTheta", Imf::FloatAttribute(degrees(theta_of(view))));
+    header.insert("viewPhi", Imf::FloatAttribute(degrees(phi_of(view))));
     header.insert("lightTheta", Imf::FloatAttribute(degrees(theta_of(lights[l]))));
     header.insert("lightPhi", Imf::FloatAttribute(degrees(phi_of(lights[l]))));
-    header.insert("weftProvenance", Imf::StringAttribute(view.provenance));
+    header.insert("weftProvenance", Imf::StringAttribute(file.provenance));
     if (!standard_errors.empty()) {
       header.insert("standardError", Imf::FloatAttribute(standard_errors[l]));
     }
@@ -82,44 +84,62 @@ Imf::MultiPartInputFile open_view(const fs::path& path) {
   }
 }
 
-}  // namespace
+// OpenEXR's message with the file's own name in place of the temporary one.
+std::string renamed(std::string message, const fs::path& temporary, const fs::path& path) {
+  const auto at = message.find(temporary.string());
+  if (at != std::string::npos) message.replace(at, temporary.string().size(), path.string());
+  return message;
+}
 
-void write_view_file(const fs::path& path, const ViewFileHeader& header,
-                     std::span<const Direction> lights, std::span<const float> values,
-                     std::span<const float> standard_errors) {
-  const std::vector<Imf::Header> headers = part_headers(header, lights, standard_errors);
+void write_parts(const fs::path& path, const ViewFileHeader& header,
+                 const std::vector<Imf::Header>& parts, std::span<const float> values) {
   const std::size_t part_size = static_cast<std::size_t>(3) * header.width * header.height;
-  errno = 0;
-  try {
-    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()),
-                                  false, 0);
-    std::vector<half> halfs(header.pixel_type == PixelType::half ? part_size : 0);
-    for (std::size_t l = 0; l < lights.size(); ++l) {
-      const std::span<const float> part = values.subspan(l * part_size, part_size);
-      Imf::OutputPart out(file, static_cast<int>(l));
-      if (header.pixel_type == PixelType::half) {
-        for (std::size_t i = 0; i < part_size; ++i) halfs[i] = part[i];
-        out.setFrameBuffer(frame_buffer(halfs.data(), header.width));
-      } else {
-        out.setFrameBuffer(frame_buffer(part.data(), header.width));
-      }
-      out.writePixels(header.height);
+  Imf::MultiPartOutputFile file(path.c_str(), parts.data(), static_cast<int>(parts.size()), false,
+                                0);
+  std::vector<half> halfs(header.pixel_type == PixelType::half ? part_size : 0);
+  for (std::size_t l = 0; l < parts.size(); ++l) {
+    const std::span<const float> part = values.subspan(l * part_size, part_size);
+    Imf::OutputPart out(file, static_cast<int>(l));
+    if (header.pixel_type == PixelType::half) {
+      for (std::size_t i = 0; i < part_size; ++i) halfs[i] = part[i];
+      out.setFrameBuffer(frame_buffer(halfs.data(), header.width));
+    } else {
+      out.setFrameBuffer(frame_buffer(part.data(), header.width));
     }
-  } catch (const std::exception& error) {
-    throw failed(path.string(), std::string("cannot be written: ") + error.what());
+    out.writePixels(header.height);
   }
-  // OpenEXR swallows errors when it closes a file: what is on disk tells.
+}
+
+// OpenEXR swallows errors when it closes a file: what is on disk tells.
+bool is_whole(const fs::path& path) {
   try {
     const Imf::MultiPartInputFile written(path.c_str(), 0);
     for (int l = 0; l < written.parts(); ++l) {
-      if (!written.partComplete(l))
-        throw failed(path.string(), "cannot be written whole", "is the disk full?");
+      if (!written.partComplete(l)) return false;
     }
-  } catch (const Error&) {
-    throw;
+    return true;
   } catch (const std::exception&) {
-    throw failed(path.string(), "cannot be written whole", "is the disk full?");
+    return false;
   }
+}
+
+}  // namespace
+
+void write_view_file(const fs::path& path, const ViewFileHeader& header, const Direction& view,
+                     std::span<const Direction> lights, std::span<const float> values,
+                     std::span<const float> standard_errors) {
+  const std::vector<Imf::Header> parts = part_headers(header, view, lights, standard_errors);
+  write_atomically(path, [&](const fs::path& temporary) {
+    errno = 0;
+    try {
+      write_parts(temporary, header, parts, values);
+    } catch (const std::exception& error) {
+      throw failed(path.string(), "cannot be written: " + renamed(error.what(), temporary, path));
+    }
+    if (!is_whole(temporary)) {
+      throw failed(path.string(), "cannot be written whole", "is the disk full?");
+    }
+  });
 }
 
 ViewFileHeader read_view_header(const fs::path& path) {
@@ -163,6 +183,10 @@ std::vector<float> read_view_values(const fs::path& path, int width, int height,
       throw bad_input(path.string(), fmt::format("part {} is {} x {}; expected {} x {} texels", l,
                                                  window.max.x - window.min.x + 1,
                                                  window.max.y - window.min.y + 1, width, height));
+    }
+    if (window.min != Imath::V2i(0, 0)) {
+      throw bad_input(path.string(), fmt::format("part {} starts at ({}, {}); expected (0, 0)", l,
+                                                 window.min.x, window.min.y));
     }
     for (const char* name : channel_names) {
       if (header.channels().findChannel(name) == nullptr) {

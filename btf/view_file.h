@@ -15,16 +15,16 @@ struct ViewFileHeader {
   int width = 0;
   int height = 0;
   PixelType pixel_type = PixelType::half;
-  Direction view{0, 0, 1};
   std::string provenance;  ///< of the run that wrote it
 };
 
+/// The file appears whole or not at all.
 /// @param values           [light][y][x][rgb].
 /// @param standard_errors  of each light's tile mean, or empty.
 /// @throws Error  failed, where the file cannot be written whole.
 void write_view_file(const std::filesystem::path& path, const ViewFileHeader& header,
-                     std::span<const Direction> lights, std::span<const float> values,
-                     std::span<const float> standard_errors);
+                     const Direction& view, std::span<const Direction> lights,
+                     std::span<const float> values, std::span<const float> standard_errors);
 
 /// @throws Error  naming the file: missing, truncated, not such a file.
 ViewFileHeader read_view_header(const std::filesystem::path& path);

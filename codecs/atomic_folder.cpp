@@ -1,9 +1,12 @@
 #include "codecs/atomic_folder.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <system_error>
 #include <vector>
 
@@ -21,6 +24,40 @@ fs::path without_trailing_slash(const fs::path& folder) {
   return normal.has_filename() ? normal : normal.parent_path();
 }
 
+// What stood at `folder` is at `by` afterwards. Answers false where the file system cannot do it.
+bool exchange(const fs::path& folder, const fs::path& by) {
+  if (renameat2(AT_FDCWD, by.c_str(), AT_FDCWD, folder.c_str(), RENAME_EXCHANGE) == 0) return true;
+  const int code = errno;
+  if (code == EINVAL || code == ENOSYS || code == ENOTSUP) return false;
+  throw fs::filesystem_error("exchange", by, folder,
+                             std::error_code(code, std::generic_category()));
+}
+
+// Where two renames must do, the second may fail: the old folder comes back then.
+void rename_twice(const fs::path& folder, const fs::path& by, const fs::path& old) {
+  fs::rename(folder, old);
+  try {
+    fs::rename(by, folder);
+  } catch (const fs::filesystem_error&) {
+    std::error_code ignored;
+    fs::rename(old, folder, ignored);
+    throw;
+  }
+}
+
+void replace(const fs::path& folder, const fs::path& by, const fs::path& old) {
+  if (!fs::exists(folder)) {
+    fs::rename(by, folder);
+  } else if (!exchange(folder, by)) {
+    rename_twice(folder, by, old);
+  }
+  sync_folder(folder.parent_path());
+  fs::remove_all(by);
+  fs::remove_all(old);
+}
+
+}  // namespace
+
 void check_replaceable(const fs::path& folder) {
   if (!fs::exists(folder)) return;
   if (fs::is_directory(folder) && (fs::is_empty(folder) || fs::exists(folder / "codec.json")))
@@ -28,14 +65,6 @@ void check_replaceable(const fs::path& folder) {
   throw bad_input(folder.string(), "is there already and is not a codec's folder",
                   "choose another name, or remove it");
 }
-
-void replace(const fs::path& folder, const fs::path& by, const fs::path& old) {
-  if (fs::exists(folder)) fs::rename(folder, old);
-  fs::rename(by, folder);
-  fs::remove_all(old);
-}
-
-}  // namespace
 
 void write_folder_atomically(const fs::path& folder,
                              const std::function<void(const fs::path&)>& write) {

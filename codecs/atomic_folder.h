@@ -9,6 +9,10 @@
 
 namespace weft {
 
+/// What `write_folder_atomically` would refuse, told before the work is done.
+/// @throws Error  bad_input where `folder` is there and neither empty nor a codec's.
+void check_replaceable(const std::filesystem::path& folder);
+
 /// Calls `write` with a new folder beside, which is renamed to `folder` when it is done; nothing is
 /// left where it throws. A codec's folder or an empty one that is there already is replaced.
 /// @throws Error  bad_input where something else is there; failed where the disk refuses.

@@ -57,14 +57,13 @@ std::unique_ptr<Representation> open_representation(const std::filesystem::path&
                     "the file is truncated or not Weft's");
   }
   const std::string name = json["codec"];
-  try {
-    return codec_named(name).load(folder);
-  } catch (const Error& error) {
-    if (error.where() != "codec") throw;
+  const auto found = std::ranges::find(codecs(), name, &Codec::name);
+  if (found == codecs().end()) {
     throw bad_input(json_path.string(),
                     fmt::format("`codec` names '{}', which this build does not have", name),
                     hint_for(name));
   }
+  return found->load(folder);
 }
 
 }  // namespace weft

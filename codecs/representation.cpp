@@ -4,12 +4,14 @@
 
 namespace weft {
 
+double compression_ratio(Imath::V2i texels, std::size_t pairs, std::size_t bytes) {
+  return 3.0 * texels.x * texels.y * static_cast<double>(pairs) / static_cast<double>(bytes);
+}
+
 double compression_ratio(const Representation& representation) {
-  const Imath::V2i texels = representation.texels();
-  const double raw = 3.0 * texels.x * texels.y *
-                     static_cast<double>(representation.views().size()) *
-                     static_cast<double>(representation.lights().size());
-  return raw / static_cast<double>(representation.bytes());
+  return compression_ratio(representation.texels(),
+                           representation.views().size() * representation.lights().size(),
+                           representation.bytes());
 }
 
 }  // namespace weft

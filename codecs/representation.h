@@ -32,7 +32,9 @@ class Representation : public Appearance {
   virtual GlProgram gl_program() const = 0;
 };
 
-/// ratio = 3 W H views lights / bytes(): the papers' 24-bit input against what is uploaded.
+/// ratio = 3 W H views lights / bytes: the papers' 24-bit input against what is uploaded. `pairs` =
+/// views x lights.
+double compression_ratio(Imath::V2i texels, std::size_t pairs, std::size_t bytes);
 double compression_ratio(const Representation& representation);
 
 /// One row of the registry.

@@ -161,6 +161,7 @@ Model model_from(const fs::path& folder, const Json& json) {
   }
   if (model.clustered) {
     model.index = read_array(folder, entry_named(arrays, "index"), model.width, model.height).bytes;
+    if (model.index.empty()) throw bad_input("index", "is of type float; expected 8-bit index");
   }
   const Json& scale = entry_named(arrays, "scale");
   model.scale = read_array(folder, scale, model.width, model.height);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "btf/error.h"
+#include "btf/raw_appearance.h"
 #include "codecs/cmf/k_means.h"
 #include "codecs/cmf/scale_map.h"
 
@@ -39,19 +40,18 @@ LaneVector read_block(const Btf& btf, int first, int count) {
   const std::size_t n_lights = btf.lights().size();
   const std::size_t n_views = btf.views().size();
   LaneVector f(n_lights * n_views);
+  const std::vector<float> inverse_cosine = inverse_cosines(btf.lights());
   std::vector<float> values(3 * f.size());
   for (int t = 0; t < count; ++t) {
     btf.abrdf((first + t) % btf.width(), (first + t) / btf.width(), values);
     const float* p = values.data();
     for (std::size_t view = 0; view < n_views; ++view) {
       for (std::size_t light = 0; light < n_lights; ++light, p += 3) {
-        const float cosine = btf.lights()[light].z;
-        const float inverse = cosine > 1e-6F ? 1 / cosine : 0;
         Lanes& lanes = f[light * n_views + view];
         for (int c = 0; c < 3; ++c) {
           if (!(p[c] >= 0) || !std::isfinite(p[c]))
             throw invalid_sample(btf, light, view, first + t, p[c]);
-          lanes[3 * t + c] = p[c] * inverse;
+          lanes[3 * t + c] = p[c] * inverse_cosine[light];
         }
       }
     }

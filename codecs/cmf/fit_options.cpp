@@ -3,6 +3,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "btf/error.h"
 #include "codecs/cmf/fit.h"
 
 namespace weft::cmf {
@@ -18,6 +19,14 @@ FitOptions fit_options(const Settings& parameters) {
   FitOptions options;
   ChainOptions& chain = options.chain;
   chain.half = parameters.choice("factors", {three_factors, two_factors}) == three_factors;
+  for (const char* key : {"difference_rings", "refine"}) {
+    if (!chain.half && parameters.has(key)) {
+      throw bad_input(
+          parameters.where(key),
+          std::string(key) + " is of the half factor, which factors=light,view leaves out",
+          "leave it out too");
+    }
+  }
   chain.resolution = static_cast<int>(parameters.integer("resolution", chain.resolution, 2, 256));
   chain.difference_rings =
       static_cast<int>(parameters.integer("difference_rings", chain.difference_rings, 1, 64));

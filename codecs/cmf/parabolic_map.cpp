@@ -10,8 +10,9 @@ BilinearTaps ParabolicMap::taps(const Direction& direction) const {
   const auto last = static_cast<float>(resolution_ - 1);
   const float x = std::clamp((p.x + 1) * 0.5F * last, 0.0F, last);
   const float y = std::clamp((1 - p.y) * 0.5F * last, 0.0F, last);
-  const int column = std::min(static_cast<int>(x), resolution_ - 2);
-  const int row = std::min(static_cast<int>(y), resolution_ - 2);
+  // A NaN may not be cast; it stays in the weights.
+  const int column = x > 0 ? std::min(static_cast<int>(x), resolution_ - 2) : 0;
+  const int row = y > 0 ? std::min(static_cast<int>(y), resolution_ - 2) : 0;
   const float a = x - static_cast<float>(column);
   const float b = y - static_cast<float>(row);
   const auto first = static_cast<std::uint32_t>(row * resolution_ + column);

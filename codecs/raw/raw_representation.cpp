@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -39,13 +40,20 @@ SampleLayout layout_of(PixelType type, std::size_t samples) {
   return 3 * samples <= max_buffer_texels ? three_halfs : padded_halfs;
 }
 
-std::size_t sample_count(const RawAppearance& appearance) {
-  std::size_t samples = 0;
-  for (const auto& level : appearance.levels()) {
-    samples += static_cast<std::size_t>(level->width()) * level->height() * level->views().size() *
-               level->lights().size();
+// Of all mip levels, as `next_mip_level` makes them.
+std::size_t sample_count(int width, int height, std::size_t pairs) {
+  std::size_t texels = static_cast<std::size_t>(width) * height;
+  while (width > 1 || height > 1) {
+    width = std::max(1, width / 2);
+    height = std::max(1, height / 2);
+    texels += static_cast<std::size_t>(width) * height;
   }
-  return samples;
+  return texels * pairs;
+}
+
+std::size_t sample_count(const Btf& finest) {
+  return sample_count(finest.width(), finest.height(),
+                      finest.views().size() * finest.lights().size());
 }
 
 void append(std::vector<std::byte>& bytes, const Btf& level, const SampleLayout& layout) {
@@ -64,7 +72,7 @@ void append(std::vector<std::byte>& bytes, const Btf& level, const SampleLayout&
 }
 
 GlTexture values_texture(const RawAppearance& appearance) {
-  const std::size_t samples = sample_count(appearance);
+  const std::size_t samples = sample_count(*appearance.levels()[0]);
   const SampleLayout layout = layout_of(appearance.levels()[0]->pixel_type(), samples);
   if (samples * layout.texels_a_sample > max_buffer_texels) {
     throw bad_input(
@@ -78,15 +86,6 @@ GlTexture values_texture(const RawAppearance& appearance) {
   for (const auto& level : appearance.levels()) append(texture.bytes, *level, layout);
   texture.width = static_cast<int>(samples * layout.texels_a_sample);
   return texture;
-}
-
-// 1 / cos(theta) of each light, 0 where it is on the horizon, as RawAppearance has them.
-std::vector<float> inverse_cosines(const HemisphereSampling& lights) {
-  std::vector<float> inverse;
-  for (const Direction& light : lights.directions()) {
-    inverse.push_back(light.z > 1e-6F ? 1 / light.z : 0);
-  }
-  return inverse;
 }
 
 // Each level's width, height and first sample.
@@ -144,9 +143,14 @@ vec3 btf_evaluate(vec2 uv, vec3 light, vec3 view, float lod) {
 RawRepresentation::RawRepresentation(std::shared_ptr<const Btf> btf)
     : appearance_(std::move(btf)) {}
 
+std::size_t raw_texture_bytes(int width, int height, std::size_t pairs, PixelType type) {
+  const std::size_t samples = sample_count(width, height, pairs);
+  return samples * layout_of(type, samples).bytes_a_sample();
+}
+
 std::size_t RawRepresentation::bytes() const {
-  const std::size_t samples = sample_count(appearance_);
-  return samples * layout_of(btf().pixel_type(), samples).bytes_a_sample();
+  return raw_texture_bytes(btf().width(), btf().height(), views().size() * lights().size(),
+                           btf().pixel_type());
 }
 
 std::size_t RawRepresentation::constant_bytes() const {
@@ -175,7 +179,7 @@ GlProgram RawRepresentation::gl_program() const {
     program.glsl += part.glsl;
     for (GlTexture& table : part.textures) program.textures.push_back(std::move(table));
   }
-  const SampleLayout layout = layout_of(btf().pixel_type(), sample_count(appearance_));
+  const SampleLayout layout = layout_of(btf().pixel_type(), sample_count(btf()));
   program.glsl += fmt::format("\nconst int btf_n_views = {};\nconst int btf_n_lights = {};\n{}",
                               views().size(), lights().size(), level_table(appearance_));
   program.glsl += fmt::format("vec3 btf_sample(int i) {{\n  return {};\n}}\n", layout.fetch);

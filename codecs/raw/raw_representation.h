@@ -7,6 +7,9 @@
 
 namespace weft {
 
+/// Texture bytes of a raw BTF with its mip levels, from its sizes alone; `pairs` = views x lights.
+std::size_t raw_texture_bytes(int width, int height, std::size_t pairs, PixelType type);
+
 class RawRepresentation : public Representation {
  public:
   explicit RawRepresentation(std::shared_ptr<const Btf> btf);

@@ -137,6 +137,38 @@ TEST_CASE("a view in memory comes back, and takes only what can be stored") {
   CHECK(floats.at(5, 1, 1, 1).x == 70000);
 }
 
+TEST_CASE("a view whose window does not start at (0, 0) is refused") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "a.btf" / "view_002.exr";
+  write_btf(folder.path / "a.btf", random_btf(PixelType::half));
+  std::string bytes = read_text(path);
+  const std::string checksum = file_checksum(path);
+  // Of the first part: name, type, size, then xMin, yMin, xMax, yMax in little-endian ints.
+  const std::string name("dataWindow\0box2i\0\x10\0\0\0", 21);
+  const std::size_t window = bytes.find(name) + name.size();
+  REQUIRE(window < bytes.size());
+  bytes[window] = 1;
+  bytes[window + 8] = 3;
+  std::ofstream(path, std::ios::binary) << bytes;
+  std::string json = read_text(folder.path / "a.btf/btf.json");
+  json.replace(json.find(checksum), checksum.size(), file_checksum(path));
+  std::ofstream(folder.path / "a.btf/btf.json") << json;
+  CHECK_THROWS_WITH(read_btf(folder.path / "a.btf"),
+                    Catch::Contains("view_002.exr") && Catch::Contains("starts at (1, 0)"));
+}
+
+TEST_CASE("a view that cannot be written is named, not its temporary file") {
+  const TemporaryFolder folder;
+  BtfWriter writer(folder.path / "a.btf", header_of(random_btf(PixelType::half)));
+  std::filesystem::remove(folder.path / "a.btf");
+  try {
+    writer.write_view(2, std::vector<float>(3 * 6 * 8, 1.0F));
+    FAIL("written to a folder that is not there");
+  } catch (const Error& error) {
+    CHECK_THAT(error.what(), Catch::Contains("view_002.exr") && !Catch::Contains(".part"));
+  }
+}
+
 TEST_CASE("damaged datasets are named") {
   const TemporaryFolder folder;
   const auto path = folder.path / "a.btf";

@@ -2,6 +2,7 @@
 #include "btf/hemisphere_sampling.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -179,4 +180,26 @@ TEST_CASE("directions that cannot be are refused") {
                     Catch::Contains("repeats direction 0"));
   CHECK_THROWS_AS(HemisphereSampling({{0, 0, 2}}), Error);
   CHECK_THROWS_AS(HemisphereSampling({{0, 0, 1}}, {{0, 0, 5}}), Error);
+}
+
+TEST_CASE("triangulations of a file that cannot be searched are refused") {
+  std::vector<Direction> directions;
+  for (const int degrees : {0, 60, 120, 200, 260}) {
+    directions.push_back(from_spherical(radians(60.0), radians(static_cast<double>(degrees))));
+  }
+  using Triangles = std::vector<std::array<std::uint16_t, 3>>;
+  // Two triangles that meet in direction 2 only.
+  CHECK_THROWS_WITH(HemisphereSampling(directions, Triangles{{0, 1, 2}, {2, 3, 4}}),
+                    Catch::Contains("direction 2"));
+  CHECK_THROWS_WITH(HemisphereSampling(directions, Triangles(32768, {0, 1, 2})),
+                    Catch::Contains("32768") && Catch::Contains("32767"));
+}
+
+TEST_CASE("a NaN is located within the directions") {
+  const HemisphereSampling sampling(named_directions("ubo81"));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Direction& d :
+       {Direction(nan, 0, 1), Direction(0, nan, 1), Direction(nan, nan, nan)}) {
+    for (const std::uint16_t index : sampling.locate(d).index) CHECK(index < sampling.size());
+  }
 }

@@ -1,6 +1,8 @@
 // Interpolation of raw BTFs, their mip chain, and Lambert's exactness.
 #include "btf/raw_appearance.h"
 
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "btf/random.h"
@@ -94,4 +96,17 @@ TEST_CASE("mip levels are area means, odd sizes too") {
   const float top = appearance.evaluate({0.25F, 0.5F}, up, up, 2).x;
   CHECK(appearance.evaluate({0.25F, 0.5F}, up, up, 1.25F).x ==
         Approx(0.75F * middle + 0.25F * top));
+}
+
+TEST_CASE("NaN and infinity as uv or level are answered from within the data") {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const Texcoord& uv : {Texcoord(nan, 0), Texcoord(0, nan), Texcoord(infinity, -infinity)}) {
+    const TexelStencil texels = bilinear_texels(uv, 5, 3);
+    for (const std::uint32_t index : texels.index) CHECK(index < 15);
+  }
+  const RawAppearance appearance(lambert(5, 3, PixelType::half));
+  const Direction up(0, 0, 1);
+  CHECK(std::isnan(appearance.evaluate({nan, 0}, up, up, 0).x));
+  CHECK(appearance.evaluate({0, 0}, up, up, nan) == appearance.evaluate({0, 0}, up, up, 0));
 }

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "codecs/cmf/half_difference.h"
 #include "codecs/cmf/rank_one.h"
@@ -43,6 +44,14 @@ TEST_CASE("Every direction down to the horizon has four texels of the map") {
       const auto last = static_cast<float>(resolution - 1);
       REQUIRE((Vec2(2 * p.x / last - 1, 1 - 2 * p.y / last) - parabolic(d)).length() < 1e-5F);
     }
+  }
+}
+
+TEST_CASE("A NaN has texels of the map") {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const ParabolicMap map(5);
+  for (const std::uint32_t index : map.taps(Direction(nan, nan, 1)).index) {
+    CHECK(index < static_cast<std::uint32_t>(map.texels()));
   }
 }
 

@@ -232,6 +232,31 @@ TEST_CASE("Names and parameters that are mistyped are told with what is valid") 
              Catch::Contains("resolution"));
 }
 
+TEST_CASE("CMF refuses parameters of the half factor where there is none") {
+  const auto btf = realistic_btf(1, "regular:3x6");
+  for (const std::string key : {"refine", "difference_rings"}) {
+    CHECK_THAT(message([&] {
+                 fit(codec_named("cmf"), btf, {"factors=light,view", key + "=2"});
+               }),
+               Catch::Contains(key) && Catch::Contains("light,view"));
+  }
+}
+
+TEST_CASE("A codec.json that says what its files are not is refused") {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path / "a.cmf";
+  fit(codec_named("cmf"), realistic_btf(3, "regular:3x6"))->save(path);
+  const std::string whole = read_text(path / "codec.json");
+  const auto with = [&](const std::string& old, const std::string& by) {
+    std::string text = whole;
+    text.replace(text.find(old), old.size(), by);
+    std::ofstream(path / "codec.json") << text;
+    return message([&] { open_representation(path); });
+  };
+  CHECK_THAT(with("8-bit index", "float"), Catch::Contains("index") && Catch::Contains("float"));
+  CHECK_THAT(with("\"cmf\"", "\"cmg\""), Catch::Contains("codec.json") && Catch::Contains("cmg"));
+}
+
 TEST_CASE("Every codec: a missing, truncated or changed file is named") {
   const auto btf = realistic_btf(3, "regular:3x6");
   for (const Codec& codec : codecs()) {
