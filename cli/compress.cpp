@@ -12,6 +12,7 @@
 #include "btf/btf_file.h"
 #include "btf/error.h"
 #include "cli/command.h"
+#include "codecs/atomic_folder.h"
 #include "codecs/representation.h"
 #include "codecs/sample_error.h"
 
@@ -62,6 +63,8 @@ void refuse_same_folder(const Options& options) {
 void compress(const Options& options, Session& session, bool seed_given) {
   const Codec& codec = codec_named(options.codec);
   refuse_same_folder(options);
+  // Before minutes of fitting. A raw dataset has another folder, whose writer looks itself.
+  if (codec.name != "raw") check_replaceable(options.output);
   std::vector<std::string> overrides = options.parameters;
   if (seed_given) overrides.insert(overrides.begin(), fmt::format("seed={}", session.seed));
   const Settings parameters = Settings::from_text("", "--set", overrides);

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -54,7 +55,7 @@ Imath::V2i parse_size(const std::string& text) {
 /// One pixel a texel of the level that `lod` rounds down to.
 Imath::V2i size_of_level(Imath::V2i texels, float lod) {
   for (int level = 0; level < static_cast<int>(lod); ++level) {
-    texels = {(texels.x + 1) / 2, (texels.y + 1) / 2};
+    texels = {std::max(1, texels.x / 2), std::max(1, texels.y / 2)};
   }
   return texels;
 }

@@ -11,6 +11,7 @@
 #include "btf/btf_file.h"
 #include "btf/direction.h"
 #include "cli/command.h"
+#include "codecs/raw/raw_representation.h"
 #include "codecs/representation.h"
 
 namespace weft::cli {
@@ -37,17 +38,18 @@ ordered_json describe_directions(const HemisphereSampling& sampling) {
 /// The header only: a raw BTF's pixels may be gigabytes.
 ordered_json describe_raw(const fs::path& folder) {
   const BtfHeader header = read_btf_header(folder);
-  const std::size_t samples = static_cast<std::size_t>(header.width) * header.height *
-                              header.views.size() * header.lights.size() * 3;
-  const bool half_floats = header.pixel_type == PixelType::half;
+  const std::size_t pairs = header.views.size() * header.lights.size();
+  const std::size_t bytes =
+      raw_texture_bytes(header.width, header.height, pairs, header.pixel_type);
   return {{"codec", "raw"},
           {"quantity", header.quantity},
           {"texels", {header.width, header.height}},
           {"tile_size", header.tile_size},
           {"views", describe_directions(header.views)},
           {"lights", describe_directions(header.lights)},
-          {"pixel", half_floats ? "half" : "float"},
-          {"bytes", samples * (half_floats ? sizeof(half) : sizeof(float))}};
+          {"pixel", header.pixel_type == PixelType::half ? "half" : "float"},
+          {"bytes", bytes},
+          {"ratio", compression_ratio({header.width, header.height}, pairs, bytes)}};
 }
 
 ordered_json describe_compressed(const fs::path& folder) {

@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 
 #include <charconv>
-#include <cmath>
 #include <optional>
 
 #include "btf/error.h"
 #include "cli/btf_option.h"
 #include "cli/command.h"
+#include "cli/lod_option.h"
 #include "images/image_file.h"
 #include "tracer/render.h"
 #include "tracer/scene_file.h"
@@ -71,17 +71,6 @@ int parse_max_bounces(const std::string& text) {
     throw bad_input("--max-bounces",
                     "found '" + text + "', expected a whole number or 'unlimited'");
   return *bounces;
-}
-
-std::optional<float> parse_lod(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  float lod = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), lod);
-  if (problem != std::errc() || end != text.data() + text.size() || !(lod >= 0) ||
-      !std::isfinite(lod)) {
-    throw bad_input("--lod", "found '" + text + "', expected 'auto' or a level of at least 0");
-  }
-  return lod;
 }
 
 void report(const RenderStatistics& statistics, const Image& image, Session& session) {

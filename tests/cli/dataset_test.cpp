@@ -36,7 +36,9 @@ TEST_CASE("info tells the sizes of a raw and of a compressed dataset") {
   CHECK(raw["texels"] == nlohmann::json::array({4, 2}));
   CHECK(raw["views"]["count"] == 7);
   CHECK(raw["lights"]["largest_theta"].get<double>() == Approx(50).margin(1e-4));
-  CHECK(raw["bytes"] == 4 * 2 * 7 * 7 * 3 * sizeof(float));
+  // Of the mip levels 4 x 2, 2 x 1 and 1 x 1.
+  CHECK(raw["bytes"] == (8 + 2 + 1) * 7 * 7 * 3 * sizeof(float));
+  CHECK(raw["ratio"].get<double>() == Approx(8.0 / 11 / sizeof(float)));
 
   REQUIRE(dataset.run({"compress", "small.btf", "--codec", "cmf", "-o", "small.cmf"}).exit_code ==
           0);
@@ -66,6 +68,25 @@ TEST_CASE("extract writes the values of one view and one light, +y up") {
   CHECK(dataset.json({"extract", "small.btf", "--view", "0,0", "--light", "0,0", "-o", "b.png",
                       "--size", "16x8"})["size"] == nlohmann::json::array({16, 8}));
   CHECK(fs::exists(dataset.folder.path / "b.png"));
+}
+
+TEST_CASE("extract rounds a level's size down, as the levels themselves do") {
+  const TemporaryFolder folder;
+  const weft::HemisphereSampling up({{0, 0, 1}});
+  weft::write_btf(folder.path / "five.btf", weft::Btf(5, 5, up, up, weft::PixelType::half));
+  const Outcome outcome = run_weft({"extract", "five.btf", "--view", "0,0", "--light", "0,0", "-o",
+                                    "a.exr", "--lod", "1", "--json"},
+                                   folder.path);
+  CHECK(nlohmann::json::parse(outcome.out)["size"] == nlohmann::json::array({2, 2}));
+}
+
+TEST_CASE("compress refuses a folder that it may not replace before it reads anything") {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path / "mine");
+  std::ofstream(folder.path / "mine" / "letter.txt") << "dear";
+  const Outcome outcome = run_weft({"compress", "none.btf", "-o", "mine"}, folder.path);
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("mine"));
 }
 
 TEST_CASE("extract refuses what it cannot do, and leaves no picture") {
