@@ -46,6 +46,12 @@ std::string parameter_table() {
   return table;
 }
 
+/// Whether a codec draws random numbers: one of its lines of parameters is `seed = 0 ...`.
+bool takes_seed(const Codec& codec) {
+  return codec.parameters.starts_with("seed ") ||
+         codec.parameters.find("\nseed ") != std::string::npos;
+}
+
 std::uintmax_t size_on_disk(const fs::path& folder) {
   std::uintmax_t bytes = 0;
   for (const auto& entry : fs::directory_iterator(folder)) bytes += entry.file_size();
@@ -66,7 +72,8 @@ void compress(const Options& options, Session& session, bool seed_given) {
   // Before minutes of fitting. A raw dataset has another folder, whose writer looks itself.
   if (codec.name != "raw") check_replaceable(options.output);
   std::vector<std::string> overrides = options.parameters;
-  if (seed_given) overrides.insert(overrides.begin(), fmt::format("seed={}", session.seed));
+  if (seed_given && takes_seed(codec))
+    overrides.insert(overrides.begin(), fmt::format("seed={}", session.seed));
   const Settings parameters = Settings::from_text("", "--set", overrides);
   const auto btf = std::make_shared<const Btf>(read_btf(options.input));
 

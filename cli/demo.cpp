@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "btf/atomic_file.h"
+#include "btf/error.h"
 #include "cli/command.h"
 #include "cli/demo_job.h"
 #include "cli/demo_report.h"
@@ -48,8 +49,20 @@ std::string summary(const DemoResult& r) {
       100 * r.previewed.relative_rmse);
 }
 
+/// A mistyped name is told before minutes of tracing, and so is `raw`: the demo compares with it.
+void check_codec(const std::string& name) {
+  if (codec_named(name).name != "raw") return;
+  std::string others;
+  for (const Codec& codec : codecs()) {
+    if (codec.name != "raw") others += (others.empty() ? "" : ", ") + codec.name;
+  }
+  throw bad_input("--codec",
+                  "the demo compares a compressed BTF with raw, and raw is not compressed",
+                  "valid here: " + others);
+}
+
 void demo(DemoSettings settings, Session& session) {
-  codec_named(settings.codec);  // a mistyped name is told before minutes of tracing
+  check_codec(settings.codec);
   settings.scenes = scene_folder(settings.scenes);
   settings.seed = session.seed;
   settings.quiet = session.quiet;

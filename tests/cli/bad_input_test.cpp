@@ -158,3 +158,8 @@ TEST_CASE("preview refuses a size that no picture has") {
                     "--size", "9999999x2"},
                    {"--size", "9999999x2", "16384"});
 }
+
+TEST_CASE("The demo refuses to compress with raw before it traces") {
+  const Mistakes mistakes;
+  mistakes.refused({"demo", "--codec", "raw", "-o", "demo"}, {"--codec", "raw", "cmf"});
+}

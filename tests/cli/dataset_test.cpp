@@ -150,3 +150,16 @@ TEST_CASE("validate ends with 3 where the JSON is half a file") {
   CHECK_THAT(outcome.err, Contains("btf.json"));
   CHECK(dataset.run({"validate", "nothing.btf"}).exit_code == 2);
 }
+
+TEST_CASE("compress hands the global seed only to a codec that draws random numbers") {
+  const Dataset dataset;
+  for (const std::string& codec : {std::string("raw"), std::string("cmf")}) {
+    INFO(codec);
+    const Outcome outcome =
+        dataset.run({"compress", "small.btf", "--codec", codec, "--seed", "3", "-o", "out"});
+    CHECK(outcome.err.find("unknown") == std::string::npos);
+    CHECK(outcome.exit_code == 0);
+  }
+  CHECK(dataset.run({"compress", "small.btf", "--codec", "raw", "--set", "seed=3", "-o", "out.btf"})
+            .exit_code == 2);
+}
