@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
 
 #include "btf/atomic_file.h"
 #include "btf/btf_file.h"
@@ -65,14 +68,32 @@ ordered_json describe_compressed(const fs::path& folder) {
           {"ratio", compression_ratio(*representation)}};
 }
 
+void append_numbers(const ordered_json& value, std::vector<double>& numbers) {
+  if (value.is_number()) numbers.push_back(value.get<double>());
+  if (!value.is_array()) return;
+  for (const ordered_json& item : value) append_numbers(item, numbers);
+}
+
+/// A value on one line; of a matrix that would fill the terminal (the noise of every pair), what it
+/// spans.
+std::string in_a_line(const ordered_json& value) {
+  constexpr std::size_t shown_whole = 16;
+  if (value.is_string()) return value.get<std::string>();
+  std::vector<double> numbers;
+  append_numbers(value, numbers);
+  if (numbers.size() <= shown_whole) return value.dump();
+  const auto [least, largest] = std::ranges::minmax(numbers);
+  const double mean = std::accumulate(numbers.begin(), numbers.end(), 0.0) / numbers.size();
+  return fmt::format("{} numbers: least {:.4g}, mean {:.4g}, largest {:.4g}", numbers.size(), least,
+                     mean, largest);
+}
+
 /// One line a value; tables indented below their name.
 void print(const ordered_json& value, const Session& session, const std::string& indent) {
   for (const auto& [key, item] : value.items()) {
     const bool table = item.is_object() && !item.empty();
-    session.say(fmt::format("{}{:<{}} {}", indent, key, 20 - indent.size(),
-                            table              ? ""
-                            : item.is_string() ? item.get<std::string>()
-                                               : item.dump()));
+    session.say(
+        fmt::format("{}{:<{}} {}", indent, key, 20 - indent.size(), table ? "" : in_a_line(item)));
     if (table) print(item, session, indent + "  ");
   }
 }

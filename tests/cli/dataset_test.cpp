@@ -163,3 +163,16 @@ TEST_CASE("compress hands the global seed only to a codec that draws random numb
   CHECK(dataset.run({"compress", "small.btf", "--codec", "raw", "--set", "seed=3", "-o", "out.btf"})
             .exit_code == 2);
 }
+
+TEST_CASE("info tells the span of a matrix to people, and all of it with --json") {
+  const Dataset dataset;
+  const fs::path path = dataset.folder.path / "small.btf" / "btf.json";
+  auto description = nlohmann::json::parse(std::ifstream(path));
+  std::vector<std::vector<double>> noise(7, std::vector<double>(7, 0.25));
+  noise[2][3] = 0.74;
+  description["noise"]["standard_error_of_pair_means"] = noise;
+  std::ofstream(path) << description.dump();
+  CHECK_THAT(dataset.run({"info", "small.btf"}).out,
+             Contains("49 numbers: least 0.25, mean 0.26, largest 0.74"));
+  CHECK(dataset.json({"info", "small.btf"})["noise"]["standard_error_of_pair_means"] == noise);
+}
