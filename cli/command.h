@@ -21,6 +21,8 @@ struct Session {
   int exit_code = ok;
   /// Prints a line for people: nothing with --json or --quiet.
   void say(const std::string& line) const;
+  /// Prints a warning to stderr: nothing with --quiet.
+  void warn(const std::string& line) const;
 };
 
 // Each adds one subcommand; its callback does the work when it was chosen.

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/option_checks.h"
 #include "images/image_file.h"
 #include "study/colour_map.h"
 #include "study/metrics.h"
@@ -101,12 +102,12 @@ void add_compare(CLI::App& app, Session& session) {
           "--map-top", options->map_top,
           "Error that has the map's brightest colour; default: the 99.5th percentile, rounded up")
       ->option_text("X")
-      ->check(CLI::PositiveNumber);
+      ->check(above(0));
   command
       ->add_option("--max-rmse", options->max_rmse,
                    "Exit with 3 where the RMSE is above X (linear values)")
       ->option_text("X")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   command->callback([options, &session] { compare(*options, session); });
 }
 

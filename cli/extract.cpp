@@ -14,6 +14,7 @@
 
 #include "btf/error.h"
 #include "cli/command.h"
+#include "cli/option_checks.h"
 #include "codecs/representation.h"
 #include "images/image_file.h"
 
@@ -150,7 +151,7 @@ void add_extract(CLI::App& app, Session& session) {
           "--scale", options->scale,
           "Factor on the values; default: 1 for float formats, pi for 8-bit ones, where a white "
           "Lambertian tile under a light overhead is white then")
-      ->check(CLI::PositiveNumber);
+      ->check(above(0));
   command->callback([options, &session] { extract(*options, session); });
 }
 

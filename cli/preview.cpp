@@ -10,6 +10,7 @@
 #include "btf/error.h"
 #include "cli/btf_option.h"
 #include "cli/command.h"
+#include "cli/dark_scene.h"
 #include "cli/lod_option.h"
 #include "gl_preview/headless.h"
 #include "gl_preview/window.h"
@@ -76,7 +77,8 @@ std::vector<PreviewPane> open_panes(const PreviewArguments& arguments) {
   return panes;
 }
 
-void tell_what_is_approximate(const Scene& scene, const Session& session) {
+void tell_about_light(const Scene& scene, const Session& session) {
+  warn_where_dark(scene, session);
   if (scene.environments.empty()) return;
   session.say(
       fmt::format("Environment light is shown as {} directional lights, and not behind the scene.",
@@ -85,7 +87,7 @@ void tell_what_is_approximate(const Scene& scene, const Session& session) {
 
 void preview_headless(const PreviewArguments& arguments, Session& session) {
   const std::vector<PreviewPane> panes = open_panes(arguments);
-  tell_what_is_approximate(panes.front().scene, session);
+  tell_about_light(panes.front().scene, session);
   const HeadlessOptions options{parse_lod(arguments.lod),
                                 arguments.frames.value_or(timed_frames_by_default)};
   for (std::size_t i = 0; i < panes.size(); ++i) {
@@ -113,7 +115,7 @@ void preview_headless(const PreviewArguments& arguments, Session& session) {
 
 void preview_in_window(const PreviewArguments& arguments, Session& session) {
   std::vector<PreviewPane> panes = open_panes(arguments);
-  tell_what_is_approximate(panes.front().scene, session);
+  tell_about_light(panes.front().scene, session);
   std::vector<std::string> titles;
   for (const PreviewPane& pane : panes) titles.push_back(pane.title);
   const WindowResult result = preview_window(

@@ -8,7 +8,9 @@
 #include "btf/error.h"
 #include "cli/btf_option.h"
 #include "cli/command.h"
+#include "cli/dark_scene.h"
 #include "cli/lod_option.h"
+#include "cli/option_checks.h"
 #include "images/image_file.h"
 #include "tracer/render.h"
 #include "tracer/scene_file.h"
@@ -115,6 +117,7 @@ void run(Options& options, Session& session) {
   if (!options.variance.empty()) check_image_path(options.variance);
   const Scene scene =
       read_scene(options.scene, open_datasets(), btf_paths(options.btfs), options.overrides);
+  warn_where_dark(scene, session);
   Progress progress("render", session.quiet || session.json);
   const RenderResult result = render(scene, options.settings, progress);
   write_image(options.output, result.image, Encoding::colour);
@@ -150,7 +153,7 @@ void add_render(CLI::App& app, Session& session) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   name("--integrator", options->integrator, "path, or direct: light that was reflected once")
-      ->check(CLI::IsMember(names_of(integrators)));
+      ->check(one_of(names_of(integrators)));
   command->add_option("--spp", options->settings.samples_per_pixel, "Samples a pixel")
       ->check(CLI::Range(1, 1 << 24))
       ->capture_default_str();
@@ -158,7 +161,7 @@ void add_render(CLI::App& app, Session& session) {
       ->type_name("N");
   name("--filter", options->filter,
        "Where a pixel's samples lie: box (all over it), centre, gaussian (sigma half a pixel)")
-      ->check(CLI::IsMember(names_of(filters)));
+      ->check(one_of(names_of(filters)));
   command->add_flag("--no-shadows", options->no_shadows,
                     "Nothing stands in a light's way (for comparing with the preview)");
   name("--lod", options->lod,

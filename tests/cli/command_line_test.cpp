@@ -27,6 +27,9 @@ TEST_CASE("The program's help names every subcommand, and each has its own") {
     const Outcome one = run_weft({name, "--help"}, folder.path);
     CHECK(one.exit_code == 0);
     CHECK_THAT(one.out, Contains("Usage:") && Contains(name) && Contains("--help"));
+    for (const char* option : {"--json", "--quiet", "--threads", "--seed"}) {
+      CHECK_THAT(one.out, Contains(option));
+    }
   }
 }
 
@@ -39,6 +42,38 @@ TEST_CASE("A subcommand that does not exist is answered with those that do") {
     CHECK(outcome.exit_code == 2);
     for (const std::string& name : subcommands) CHECK_THAT(outcome.err, Contains(name));
   }
+}
+
+TEST_CASE("A mistyped word below a subcommand is named, with the valid ones") {
+  const TemporaryFolder folder;
+  const Outcome mistyped = run_weft({"list", "codcs"}, folder.path);
+  const Outcome missing = run_weft({"list"}, folder.path);
+  CHECK_THAT(mistyped.err, Contains("'codcs'") && Contains("did you mean 'codecs'"));
+  for (const Outcome& outcome : {mistyped, missing}) {
+    CHECK(outcome.exit_code == 2);
+    for (const char* name : {"codecs", "mesostructures", "scenes"}) {
+      CHECK_THAT(outcome.err, Contains(name));
+    }
+    CHECK_THAT(outcome.err, !Contains("acquire"));
+  }
+}
+
+TEST_CASE("Values out of range are refused in a short sentence that names them") {
+  const TemporaryFolder folder;
+  const auto [arguments, found] = GENERATE(table<std::vector<std::string>, std::string>({
+      {{"list", "codecs", "--seed", "-1"}, "--seed: found '-1'"},
+      {{"list", "codecs", "--seed", "1.5"}, "--seed: found '1.5'"},
+      {{"list", "codecs", "--threads", "-1"}, "--threads: found '-1'"},
+      {{"compare", "a.exr", "b.exr", "--max-rmse", "abc"}, "--max-rmse: found 'abc'"},
+      {{"compare", "a.exr", "b.exr", "--map-top", "0"}, "--map-top: found '0'"},
+      {{"extract", "a", "-o", "a.exr", "--view", "0,0", "--light", "0,0", "--scale", "0"},
+       "--scale: found '0'"},
+      {{"render", "a.toml", "-o", "a.exr", "--integrator", "dirct"}, "did you mean 'direct'"},
+  }));
+  const Outcome outcome = run_weft(arguments, folder.path);
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains(found));
+  CHECK(outcome.err.size() < 160);
 }
 
 TEST_CASE("--json prints one JSON object and nothing else") {

@@ -76,4 +76,15 @@ TEST_CASE("render refuses what it cannot do in one sentence, and leaves no pictu
   CHECK_FALSE(std::filesystem::exists(folder.path / "out.exr"));
 }
 
+TEST_CASE("A scene without light is warned of, but not with --quiet") {
+  const RenderFolder folder;
+  const std::vector<std::string> dark = {"--set", "light=[]", "--spp", "1", "--json"};
+  const Outcome told = folder.render(dark);
+  CHECK(told.exit_code == 0);
+  CHECK_THAT(told.err, Catch::Contains("warning") && Catch::Contains("no light"));
+  std::vector<std::string> quiet = dark;
+  quiet.back() = "--quiet";
+  CHECK(folder.render(quiet).err.empty());
+}
+
 }  // namespace
