@@ -155,8 +155,8 @@ TEST_CASE("compress hands the global seed only to a codec that draws random numb
   const Dataset dataset;
   for (const std::string& codec : {std::string("raw"), std::string("cmf")}) {
     INFO(codec);
-    const Outcome outcome =
-        dataset.run({"compress", "small.btf", "--codec", codec, "--seed", "3", "-o", "out"});
+    const Outcome outcome = dataset.run(
+        {"compress", "small.btf", "--codec", codec, "--seed", "3", "-o", "out." + codec});
     CHECK(outcome.err.find("unknown") == std::string::npos);
     CHECK(outcome.exit_code == 0);
   }
