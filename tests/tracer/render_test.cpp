@@ -166,7 +166,7 @@ TEST_CASE("White furnace: what is white in a white world cannot be seen", "[rend
   CHECK(result.statistics.invalid.not_finite == 0);
 }
 
-TEST_CASE("Without bounces a torus' hole is darker; each bounce adds", "[render]") {
+TEST_CASE("Without bounces a torus' hole is darker, and each bounce adds", "[render]") {
   Scene scene = scene_of("type = 'torus'", lambert(1), 24);
   scene.environments.push_back(constant_environment(1));
   double before = 0;
