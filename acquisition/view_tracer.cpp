@@ -121,7 +121,11 @@ TracedView ViewTracer::trace(const Direction& view, std::uint64_t view_key) cons
     statistics[b] = block.statistics();
   };
   // Isolated: a thread that waits here must not begin another view, whose memory would come on top.
-  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, blocks, trace_block); });
+  // With a context of its own: where another view fails, TBB would otherwise cancel this one's
+  // blocks in silence.
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  tbb::this_task_arena::isolate(
+      [&] { tbb::parallel_for(std::size_t{0}, blocks, trace_block, context); });
   std::vector<double> sums(PathBlock::error_groups * lights_.size());
   for (std::size_t b = 0; b < blocks; ++b) {
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += group_sums[b][i];

@@ -2,10 +2,14 @@
 #include "acquisition/view_tracer.h"
 
 #include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <thread>
 
 #include "acquisition/acquire.h"
 #include "btf/error.h"
@@ -136,6 +140,29 @@ TEST_CASE("the bytes do not depend on threads") {
   CHECK(one.values == four.values);
   CHECK(one.standard_errors == four.standard_errors);
   CHECK(one.statistics.rays() == four.statistics.rays());
+}
+
+TEST_CASE("a view is traced whole though another view's task fails meanwhile") {
+  const ViewTracer tracer(test::checker(64), named_directions("regular:3x8"),
+                          {.width = 64, .height = 64, .spp = 2, .max_bounces = 2, .seed = 5});
+  const TracedView expected = tracer.trace({0, 0, 1}, 0);
+  std::atomic<bool> started = false;
+  TracedView traced;
+  const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism,
+                                            2);
+  const auto task = [&](int i) {
+    if (i == 0) {
+      started = true;
+      traced = tracer.trace({0, 0, 1}, 0);
+    } else {
+      for (int wait = 0; !started && wait < 1000; ++wait) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      throw failed("disk", "is full");
+    }
+  };
+  CHECK_THROWS_AS(tbb::parallel_for(0, 2, task), Error);
+  if (started) CHECK(traced.values == expected.values);
 }
 
 TEST_CASE("standard errors tell the spread of a pair's mean") {

@@ -76,7 +76,7 @@ TEST_CASE("Values out of range are refused in a short sentence that names them")
   CHECK(outcome.err.size() < 160);
 }
 
-TEST_CASE("--json prints one JSON object and nothing else") {
+TEST_CASE("With --json a command prints one JSON object and nothing else") {
   const TemporaryFolder folder;
   write_small_dataset(folder.path / "small.btf");
   for (const auto& arguments : std::vector<std::vector<std::string>>{
@@ -95,7 +95,7 @@ TEST_CASE("--json prints one JSON object and nothing else") {
   }
 }
 
-TEST_CASE("--quiet prints nothing") {
+TEST_CASE("With --quiet a command prints nothing") {
   const TemporaryFolder folder;
   write_small_dataset(folder.path / "small.btf");
   const Outcome outcome = run_weft({"info", "small.btf", "--quiet"}, folder.path);
