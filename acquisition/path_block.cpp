@@ -231,7 +231,7 @@ void PathBlock::scatter(std::size_t begin, std::size_t end, int bounce) {
     const Vertex& vertex = vertices_[i - begin];
     if (vertex.facet_normal == Vec3(0, 0, 0)) continue;
     Path path = paths_[i];
-    const auto pair = static_cast<std::uint64_t>(2 * bounce + 1);
+    const std::uint64_t pair = 2 * static_cast<std::uint64_t>(bounce) + 1;
     const auto [u, v] = random(path, pair);
     const auto [lobe, roulette] = random(path, pair + 1);
     const Bsdf::Sample sample =
