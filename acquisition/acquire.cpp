@@ -74,13 +74,13 @@ AcquisitionReport acquire(const Mesostructure& mesostructure, const AcquisitionS
   report.lights = header.lights.size();
   report.views_kept = header.views.size() - missing.size();
   std::mutex mutex;
-  progress.start(static_cast<std::int64_t>(missing.size()), "views");
+  progress.start(static_cast<std::int64_t>(missing.size()), "views", "rays");
   // Views side by side, so that one is written while another is traced.
   tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
     const std::size_t v = missing[i];
     const TracedView view = tracer.trace(header.views[v], v);
     writer.write_view(v, view.values, view.standard_errors);
-    progress.advance(1);
+    progress.advance(1, view.statistics.rays());
     const std::scoped_lock lock(mutex);
     report.statistics += view.statistics;
   });

@@ -1,7 +1,7 @@
 # Writes a CTest file with every test case of a Catch2 program, its tags [slow] and [heavy] as labels.
 #
 # Catch2 2.13's own catch_discover_tests knows no labels, and warns where a tag selects nothing.
-# Input: PROGRAM, FOLDER, OUTPUT, ENVIRONMENT.
+# Input: PROGRAM, FOLDER, OUTPUT, ENVIRONMENT, TIMEOUT (seconds; slow tests get 12 times as long).
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -25,10 +25,10 @@ names_of("[heavy]" heavy)
 set(text "")
 foreach(name IN LISTS all)
   set(labels ${FOLDER})
-  set(timeout 300)
+  set(timeout ${TIMEOUT})
   if(name IN_LIST slow)
     list(APPEND labels slow)
-    set(timeout 3600)
+    math(EXPR timeout "12 * ${TIMEOUT}")
   endif()
   if(name IN_LIST heavy)
     list(APPEND labels heavy)

@@ -1,5 +1,5 @@
 # weft_program: what every executable of ours links; under thread sanitizer also the order of TBB's tasks.
-# WEFT_TEST_ENVIRONMENT: what tests run with under a sanitizer.
+# WEFT_TEST_ENVIRONMENT, WEFT_TEST_TIMEOUT: what tests run with, and how long one may take, under a sanitizer.
 
 add_library(weft_program INTERFACE)
 target_link_libraries(weft_program INTERFACE weft_compiler)
@@ -10,7 +10,9 @@ if(WEFT_SANITIZE MATCHES "thread")
 endif()
 
 set(WEFT_TEST_ENVIRONMENT "")
+set(WEFT_TEST_TIMEOUT 300)  # seconds
 if(WEFT_SANITIZE)
+  set(WEFT_TEST_TIMEOUT 1200)
   set(suppressions ${PROJECT_SOURCE_DIR}/tests/sanitizers)
   set(WEFT_TEST_ENVIRONMENT
     "ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1"

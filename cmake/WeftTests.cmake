@@ -20,7 +20,7 @@ function(weft_tests folder)
   add_custom_command(
     OUTPUT ${list}
     COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:test_${folder}> -D FOLDER=${folder} -D OUTPUT=${list}
-            -D "ENVIRONMENT=${WEFT_TEST_ENVIRONMENT}" -P ${script}
+            -D "ENVIRONMENT=${WEFT_TEST_ENVIRONMENT}" -D TIMEOUT=${WEFT_TEST_TIMEOUT} -P ${script}
     DEPENDS test_${folder} ${script}
     COMMENT "Listing the tests of ${folder}/"
     VERBATIM)

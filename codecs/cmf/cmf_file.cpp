@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr int version = 1;
+constexpr int version = 2;
 
 void write_bytes(const fs::path& path, int width, int height,
                  const std::vector<std::uint8_t>& bytes) {
@@ -69,7 +69,8 @@ Json write_arrays(const fs::path& folder, const Model& model) {
   }
   Json entry = write_array(folder, "scale", model.width, model.height, model.scale);
   entry["maximum"] = {model.scale_max.x, model.scale_max.y, model.scale_max.z};
-  entry["layout"] = "times maximum: 1/sr; row 0 at v near 1";
+  entry["layout"] = model.scale.floats.empty() ? "squared, times maximum: 1/sr; row 0 at v near 1"
+                                               : "times maximum: 1/sr; row 0 at v near 1";
   arrays.push_back(entry);
   return arrays;
 }

@@ -76,7 +76,8 @@ vec3 btf_evaluate(vec2 uv, vec3 light, vec3 view, float lod) {{
   vec3 sum = vec3(0.0);
   for (int t = 0; t < 4; ++t) {{
     ivec2 texel = texels.texel[t];
-{product}    sum += product * texelFetch(btf_scale, texel, 0).rgb * texels.weight[t];
+{product}    vec3 scale = texelFetch(btf_scale, texel, 0).rgb;
+    sum += product * {scale} * texels.weight[t];
   }}
   return sum * vec3({scale_r}, {scale_g}, {scale_b}) * light.z;
 }}
@@ -123,6 +124,7 @@ GlProgram CmfRepresentation::gl_program() const {
                   model_.width, model_.height, model_.resolution) +
       taps_glsl +
       fmt::format(fmt::runtime(evaluate_glsl), fmt::arg("taps", taps), fmt::arg("product", product),
+                  fmt::arg("scale", model_.scale.floats.empty() ? "scale * scale" : "scale"),
                   fmt::arg("scale_r", literal(model_.scale_max.x)),
                   fmt::arg("scale_g", literal(model_.scale_max.y)),
                   fmt::arg("scale_b", literal(model_.scale_max.z)));

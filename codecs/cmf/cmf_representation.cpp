@@ -14,11 +14,9 @@ Rgb CmfRepresentation::evaluate(Texcoord uv, Direction light, Direction view, fl
   for (std::size_t t = 0; t < 4; ++t) {
     if (texels.weight[t] == 0) continue;
     const std::size_t texel = texels.index[t];
-    const Rgb scale(model_.scale.value(3 * texel), model_.scale.value(3 * texel + 1),
-                    model_.scale.value(3 * texel + 2));
-    sum += factor_product(model_, texel, taps) * scale * texels.weight[t];
+    sum += factor_product(model_, texel, taps) * model_.scale_of(texel) * texels.weight[t];
   }
-  return sum * model_.scale_max * light.z;
+  return sum * light.z;
 }
 
 std::size_t CmfRepresentation::bytes() const {

@@ -114,7 +114,7 @@ void cluster_factor(const RowMatrix& maps, std::size_t factor, const FitOptions&
   }
 }
 
-// Section 6: the scale map divided by its largest value in each channel.
+// Section 6: the scale map divided by its largest value in each channel (see `Model::scale`).
 void store_scale(std::vector<float> scale, bool eight_bit, Model& model) {
   Rgb largest(0, 0, 0);
   for (std::size_t i = 0; i < scale.size(); ++i) {
@@ -122,7 +122,8 @@ void store_scale(std::vector<float> scale, bool eight_bit, Model& model) {
   }
   for (std::size_t i = 0; i < scale.size(); ++i) {
     const float divisor = largest[static_cast<int>(i % 3)];
-    scale[i] = divisor > 0 ? scale[i] / divisor : 0;
+    const float share = divisor > 0 ? scale[i] / divisor : 0;
+    scale[i] = eight_bit ? std::sqrt(share) : share;
   }
   model.scale_max = largest;
   model.scale = rgb_array(scale.data(), scale.size(), eight_bit);

@@ -50,8 +50,10 @@ struct Model {
   /// [y][x][3]: which map of factors 0, 1, 2 a texel uses; unused channels are 0. Empty unless
   /// clustered.
   std::vector<std::uint8_t> index;
-  RgbArray scale;  ///< S, [y][x][rgb], 0..1
-  Rgb scale_max;   ///< what 1 in `scale` stands for, 1/sr
+  /// S, [y][x][rgb], 0..1. In 8 bits its square root: on glossy data S differs by thousands from
+  /// texel to texel, and equal steps would leave the dull texels none.
+  RgbArray scale;
+  Rgb scale_max;  ///< what 1 in S stands for, 1/sr
   HemisphereSampling views;
   HemisphereSampling lights;
   std::string parameters = "{}";  ///< JSON: every parameter of the fit, defaults too
@@ -60,6 +62,12 @@ struct Model {
   std::size_t values_a_map() const { return 3 * static_cast<std::size_t>(resolution) * resolution; }
   std::size_t map_count(std::size_t factor) const {
     return factors[factor].maps.size() / values_a_map();
+  }
+  /// S of a texel, 1/sr.
+  Rgb scale_of(std::size_t texel) const {
+    const Rgb stored(scale.value(3 * texel), scale.value(3 * texel + 1),
+                     scale.value(3 * texel + 2));
+    return scale_max * (scale.floats.empty() ? stored * stored : stored);
   }
   std::size_t map_of(std::size_t factor, std::size_t texel) const {
     return clustered ? index[3 * texel + factor] : texel;

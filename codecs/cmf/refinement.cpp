@@ -1,5 +1,6 @@
 #include "codecs/cmf/refinement.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "codecs/cmf/half_difference.h"
@@ -7,6 +8,25 @@
 namespace weft::cmf {
 
 namespace {
+
+// How many times its largest value at the start a factor may reach. Without a bound, factors of a
+// few glossy texels grow to 1e7 where the others vanish: nothing is gained, and 8 bits, whose steps
+// are of the largest scale, lose all other texels. A bound of 2 costs less than 1 % of the error.
+constexpr float growth = 2;
+
+Lanes largest(const LaneVector& factor) {
+  Lanes result;
+  for (const Lanes& value : factor) {
+    for (int k = 0; k < lane_count; ++k) result[k] = std::max(result[k], value[k]);
+  }
+  return result;
+}
+
+void bound(LaneVector& factor, const Lanes& start) {
+  for (Lanes& value : factor) {
+    for (int k = 0; k < lane_count; ++k) value[k] = std::min(value[k], growth * start[k]);
+  }
+}
 
 // Q_t *= (L^T w P R f)_t / (L^T w (P R)^2 L Q)_t, L the lookup.
 void scale_half(const LaneVector& f, const LaneVector& q, std::span<const BilinearTaps> lookup,
@@ -44,11 +64,17 @@ void scale_half(const LaneVector& f, const LaneVector& q, std::span<const Biline
 void refine(const LaneVector& f, std::span<const BilinearTaps> lookup,
             std::span<const double> light_weights, int rounds, LightView& factors,
             LaneVector& half) {
+  const Lanes start_half = largest(half);
+  const Lanes start_light = largest(factors.light);
+  const Lanes start_view = largest(factors.view);
   LaneVector q = looked_up(half, lookup);
   for (int round = 0; round < rounds; ++round) {
     scale_half(f, q, lookup, light_weights, factors, half);
+    bound(half, start_half);
     q = looked_up(half, lookup);
     factors = weighted_rank_one(f, q, light_weights, 1, std::move(factors));
+    bound(factors.light, start_light);
+    bound(factors.view, start_view);
   }
 }
 

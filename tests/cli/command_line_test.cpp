@@ -1,6 +1,7 @@
 // The command line itself: help, names that do not exist, JSON.
 
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
@@ -102,4 +103,23 @@ TEST_CASE("With --quiet a command prints nothing") {
   CHECK(outcome.exit_code == 0);
   CHECK(outcome.out.empty());
   CHECK(outcome.err.empty());
+}
+
+// `script` gives the program a terminal.
+TEST_CASE("acquire shows progress, views and rays a second on a terminal, and nothing in a pipe") {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path / "checker.toml")
+      << "type = \"checker\"\n[materials.low]\ntype = \"lambert\"\nalbedo = [0.2, 0.3, 0.4]\n"
+         "[materials.raised]\ntype = \"lambert\"\nalbedo = [0.5, 0.4, 0.3]\n";
+  const std::string arguments = "acquire checker.toml -o checker.btf --texels 32 --spp 4";
+  const Outcome shown = run_program(
+      {"script", "-qec", std::string(WEFT_BINARY) + " " + arguments, "/dev/null"}, folder.path);
+  CHECK(shown.exit_code == 0);
+  CHECK_THAT(shown.out, Contains("acquire") && Contains(" %") && Contains(" views/s") &&
+                            Contains(" rays/s") && Contains(" s left"));
+  const Outcome piped = run_weft({"acquire", "checker.toml", "-o", "again.btf", "--texels", "8",
+                                  "--spp", "1", "--directions", "regular:2x4"},
+                                 folder.path);
+  CHECK(piped.exit_code == 0);
+  CHECK(piped.err.empty());
 }

@@ -50,11 +50,18 @@ Function* own(const char* mangled_name) {
   return reinterpret_cast<Function*>(found);
 }
 
-/// Tasks count `context` down with an atomic in TBB's headers, 8 bytes into it: its last value is
-/// their end.
-void take_over(d1::wait_context& context) {
-  __tsan_acquire(reinterpret_cast<char*>(&context) + 8);
-}
+/// Takes over the order of a wait's tasks at its end, where one of them threw too. They count
+/// `context` down with an atomic in TBB's headers, 8 bytes into it: its last value is their end.
+class TakeOver {
+ public:
+  explicit TakeOver(d1::wait_context& context) : count_(reinterpret_cast<char*>(&context) + 8) {}
+  ~TakeOver() { __tsan_acquire(count_); }
+  TakeOver(const TakeOver&) = delete;
+  TakeOver& operator=(const TakeOver&) = delete;
+
+ private:
+  char* count_;
+};
 
 void* allocate(std::size_t bytes) {
   return ::operator new (bytes, std::align_val_t{64});
@@ -88,16 +95,16 @@ void execute_and_wait(d1::task& task, d1::task_group_context& group, d1::wait_co
   static auto* const next = own<Function>(
       "_ZN3tbb6detail2r116execute_and_waitERNS0_2d14taskERNS2_18task_group_contextERNS2_12wait_"
       "contextES6_");
+  const TakeOver at_end(end);
   next(task, group, end, end_group);
-  take_over(end);
 }
 
 void wait(d1::wait_context& end, d1::task_group_context& group) {
   using Function = void(d1::wait_context&, d1::task_group_context&);
   static auto* const next =
       own<Function>("_ZN3tbb6detail2r14waitERNS0_2d112wait_contextERNS2_18task_group_contextE");
+  const TakeOver at_end(end);
   next(end, group);
-  take_over(end);
 }
 
 void* allocate(d1::small_object_pool*&, std::size_t bytes, const d1::execution_data&) {
