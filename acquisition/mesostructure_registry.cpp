@@ -6,9 +6,10 @@ namespace weft {
 
 std::span<const MesostructureType> mesostructure_types() {
   static const std::vector<MesostructureType> types = {
-      checker_type(),      //
-      rings_type(),        //
-      tissue_type(),       //
+      checker_type(),  //
+      rings_type(),    //
+      tissue_type(),   //
+      weave_type(),
       heightfield_type(),  //
       mesh_type(),         //
   };

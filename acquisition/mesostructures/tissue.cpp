@@ -1,24 +1,21 @@
 // Intertwined yarns of twisted plies in a plain weave, as subdivision surfaces of swept tubes.
 //
 // The weft (along x) and the warp (along y) go over and under each other. A yarn's centre line is
-// z(t) = A S(cos(pi t)), t in spacings of what it crosses, with S(c) = c sqrt(2 / (1 + c^2)), and
-// its cross-section (cut perpendicular to the tile's axis) lies within an ellipse of half width w
-// (in spacings) and half thickness h. Over a crossing the gap between the two yarns is g(x) + g(y)
-// with g(t) = A S(cos(pi t)) - h sqrt(1 - t^2/w^2); for w <= 0.43 S(cos(pi t)) >= sqrt(1 - t^2/w^2)
-// everywhere, so that yarns never meet where A > h.
+// z(t) = A S(cos(pi t)), t in spacings of what it crosses (see yarn.h), and its cross-section lies
+// within an ellipse of half width w (in spacings) and half thickness h. Over a crossing the gap
+// between the two yarns is g(x) + g(y) with g(t) = A S(cos(pi t)) - h sqrt(1 - t^2/w^2); for
+// w <= 0.43 S(cos(pi t)) >= sqrt(1 - t^2/w^2) everywhere, so that yarns never meet where A > h.
 #include <cmath>
-#include <numbers>
 
 #include "acquisition/mesostructures/periodic.h"
 #include "acquisition/mesostructures/plane.h"
 #include "acquisition/mesostructures/types.h"
+#include "acquisition/mesostructures/yarn.h"
 #include "btf/error.h"
 
 namespace weft {
 
 namespace {
-
-using Vec3d = Imath::V3d;
 
 struct Weave {
   int warp, weft;         // yarns a tile, even
@@ -33,83 +30,34 @@ struct Weave {
   int steps;     // control rings a crossing
 };
 
-/// One family of yarns: along `axis`; `side` x `axis` points down, so that quads face outwards.
+/// One family of yarns: along `axis`; `side` x `axis` points down.
 struct Family {
-  Vec3d axis, side;
+  Imath::V3d axis, side;
   int count;      // of its yarns a tile
   int crossings;  // yarns of the other family a tile
   int phase;      // 0: the first yarn goes over the first that it crosses
   std::uint16_t material;
 };
 
-double crossing_height(double t) {
-  const double c = std::cos(std::numbers::pi * (t - 0.5));
-  return c * std::sqrt(2 / (1 + c * c));
-}
-
-/// Control values of the periodic cubic B-spline through `samples`: where limit points are (1, 4,
-/// 1) / 6 of their neighbours. Each round leaves at most 2/3 of the error.
-std::vector<double> interpolating_controls(const std::vector<double>& samples) {
-  std::vector<double> controls = samples;
-  const std::size_t n = samples.size();
-  for (int round = 0; round < 60; ++round) {
-    const std::vector<double> old = controls;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double limit = (old[(i + n - 1) % n] + 4 * old[i] + old[(i + 1) % n]) / 6;
-      controls[i] = old[i] + samples[i] - limit;
-    }
-  }
-  return controls;
-}
-
-/// Distance from the centre line as a part of the ellipse's: 1 on the crests of the plies, less
-/// between them.
-double ply_radius(const Weave& weave, double angle, double turn) {
-  const double phase = angle - 2 * std::numbers::pi * weave.twist * turn;
-  return 1 - weave.ply_depth * (1 - std::abs(std::cos(weave.plies * phase / 2)));
-}
-
-void add_yarn(PolygonMesh& cage, const Weave& weave, const Family& family, int index) {
+void add_family(PolygonMesh& cage, const Weave& weave, const Family& family) {
   const int rings = family.crossings * weave.steps;
-  std::vector<double> heights;
-  for (int k = 0; k < rings; ++k) {
+  const YarnForm form{.half_width = weave.width / 2 / family.count,
+                      .half_thickness = weave.half_thickness,
+                      .spacing = 1.0 / family.count,
+                      .plies = weave.plies,
+                      .ply_depth = weave.ply_depth,
+                      .twist = weave.twist,
+                      .sections = weave.sections};
+  const Imath::V3d across(std::abs(family.side.x), std::abs(family.side.y), 0);
+  for (int index = 0; index < family.count; ++index) {
     const double sign = (index + family.phase) % 2 == 0 ? 1 : -1;
-    heights.push_back(sign * weave.amplitude *
-                      crossing_height(static_cast<double>(k) / weave.steps));
-  }
-  const std::vector<double> controls = interpolating_controls(heights);
-  // A circle of control points shrinks by this in the limit.
-  const double shrink = (4 + 2 * std::cos(2 * std::numbers::pi / weave.sections)) / 6;
-  const double half_width = weave.width / 2 / family.count / shrink;
-  const double half_thickness = weave.half_thickness / shrink;
-
-  const auto first = static_cast<std::uint32_t>(cage.positions.size());
-  const Vec3d across(std::abs(family.side.x), std::abs(family.side.y), 0);
-  const Vec3d centre = across * ((index + 0.5) / family.count);
-  for (int k = 0; k <= rings; ++k) {
-    const double turn = static_cast<double>(k % rings) / rings;
-    for (int s = 0; s < weave.sections; ++s) {
-      const double angle = 2 * std::numbers::pi * s / weave.sections;
-      const double radius = ply_radius(weave, angle, turn);
-      const double height =
-          weave.middle + controls[k % rings] + half_thickness * radius * std::sin(angle);
-      cage.positions.emplace_back(centre + family.axis * (static_cast<double>(k) / rings) +
-                                  family.side * (half_width * radius * std::cos(angle)) +
-                                  Vec3d(0, 0, height));
+    YarnPath path{family.axis, family.side, across * ((index + 0.5) / family.count), {}};
+    for (int k = 0; k < rings; ++k) {
+      const double from_crossing = static_cast<double>(k) / weave.steps - 0.5;
+      path.heights.push_back(weave.middle +
+                             sign * weave.amplitude * crossing_height(from_crossing));
     }
-  }
-  const auto vertex = [&](int k, int s) {
-    return first + static_cast<std::uint32_t>(k * weave.sections + s % weave.sections);
-  };
-  for (int k = 0; k < rings; ++k) {
-    for (int s = 0; s < weave.sections; ++s) {
-      for (const std::uint32_t corner :
-           {vertex(k, s), vertex(k + 1, s), vertex(k + 1, s + 1), vertex(k, s + 1)}) {
-        cage.corners.push_back(corner);
-      }
-      cage.face_sizes.push_back(4);
-      cage.materials.push_back(family.material);
-    }
+    add_yarn(cage, form, path, family.material);
   }
 }
 
@@ -145,9 +93,8 @@ TriangleMesh build(const Settings& settings) {
   const Family warp{{0, 1, 0}, {1, 0, 0}, weave.warp, weave.weft, 1, 1};
   PolygonMesh cage;
   cage.material_names = {"weft", "warp", "floor"};
-  for (const Family& family : {weft, warp}) {
-    for (int i = 0; i < family.count; ++i) add_yarn(cage, weave, family, i);
-  }
+  add_family(cage, weave, weft);
+  add_family(cage, weave, warp);
   const auto levels = static_cast<int>(settings.integer("subdivide", 1, 1, 4));
   TriangleMesh mesh = triangulate(periodic_limit_surface(cage, levels));
   add_plane(mesh, 0, 2);

@@ -8,6 +8,7 @@ namespace weft {
 MesostructureType checker_type();
 MesostructureType rings_type();
 MesostructureType tissue_type();
+MesostructureType weave_type();
 MesostructureType heightfield_type();
 MesostructureType mesh_type();
 

@@ -7,11 +7,22 @@
 #include <fstream>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "tests/temporary_folder.h"
 
 inline std::filesystem::path mesostructure_folder() {
   return std::filesystem::path(WEFT_SOURCE_DIR) / "scenes" / "mesostructures";
+}
+
+/// The names of the project's mesostructure files, sorted: `NAME.toml`.
+inline std::vector<std::string> mesostructure_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(mesostructure_folder())) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 /// Writes a file into a folder that is gone with the test; its path.

@@ -9,6 +9,7 @@
 
 #include "acquisition/mesostructure.h"
 #include "images/image_file.h"
+#include "tests/acquisition/material_layers.h"
 #include "tests/acquisition/mesostructure_files.h"
 
 using namespace weft;
@@ -34,11 +35,13 @@ Mesostructure read_bumps(const TemporaryFolder& folder, int levels) {
       {"subdivide=" + std::to_string(levels)});
 }
 
+/// Every smooth one of the project's files, and height fields.
 std::vector<Mesostructure> all_mesostructures(const TemporaryFolder& folder) {
   std::vector<Mesostructure> all;
-  all.push_back(read("checker"));
-  all.push_back(read("rings", {"segments=256", "minor_segments=32"}));
-  all.push_back(read("tissue"));
+  for (const std::string& name : mesostructure_names()) {
+    Mesostructure m = read(name);
+    if (!m.mesh.normals.empty()) all.push_back(std::move(m));
+  }
   all.push_back(read_bumps(folder, 0));
   all.push_back(read_bumps(folder, 2));
   return all;
@@ -103,7 +106,7 @@ TEST_CASE("vertices that are one across the border have one normal") {
 TEST_CASE("normals are unit vectors on the outer side of their facets") {
   const TemporaryFolder folder;
   for (const Mesostructure& m : all_mesostructures(folder)) {
-    INFO(m.type);
+    INFO(m.settings);
     double longest = 0;
     double least_cosine = 1;
     double mean_cosine = 0;
@@ -208,61 +211,18 @@ TEST_CASE("ring normals are those of tori") {
   CHECK(worst < 2e-5);
 }
 
-namespace {
-
-/// Lowest and highest z of each yarn family above each cell of a grid over the tile; empty cells
-/// keep lower > upper.
-class Layers {
- public:
-  static constexpr int size = 512;
-  struct Range {
-    float lower = 1e9F;
-    float upper = -1e9F;
-    bool empty() const { return lower > upper; }
-  };
-
-  /// Samples each triangle of a material finely; x and y wrap.
-  Layers(const TriangleMesh& mesh, const std::string& material) : cells_(size * size) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (mesh.material_names[mesh.materials[t]] != material) continue;
-      const auto& v = mesh.triangles[t];
-      constexpr int steps = 6;
-      for (int i = 0; i <= steps; ++i) {
-        for (int j = 0; i + j <= steps; ++j) {
-          const float a = static_cast<float>(i) / steps;
-          const float b = static_cast<float>(j) / steps;
-          add(mesh.positions[v[0]] * (1 - a - b) + mesh.positions[v[1]] * a +
-              mesh.positions[v[2]] * b);
-        }
-      }
-    }
-  }
-  const Range& at(int x, int y) const { return cells_[static_cast<std::size_t>(y) * size + x]; }
-
- private:
-  void add(const Vec3& p) {
-    const auto cell = [](float v) { return static_cast<int>((v - std::floor(v)) * size) % size; };
-    Range& range = cells_[static_cast<std::size_t>(cell(p.y)) * size + cell(p.x)];
-    range.lower = std::min(range.lower, p.z);
-    range.upper = std::max(range.upper, p.z);
-  }
-  std::vector<Range> cells_;
-};
-
-}  // namespace
-
 TEST_CASE("yarns go over and under in turn, and nearly touch") {
   const Mesostructure m = read("tissue", {"plies=0"});
-  const Layers weft(m.mesh, "weft");
-  const Layers warp(m.mesh, "warp");
+  const MaterialLayers weft(m.mesh, "weft");
+  const MaterialLayers warp(m.mesh, "warp");
   const float thickness = 0.3F / 4;
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
-      const int x = (2 * i + 1) * Layers::size / 8;
-      const int y = (2 * j + 1) * Layers::size / 8;
+      const int x = (2 * i + 1) * MaterialLayers::size / 8;
+      const int y = (2 * j + 1) * MaterialLayers::size / 8;
       const bool weft_over = (i + j) % 2 == 0;
-      const Layers::Range& over = (weft_over ? weft : warp).at(x, y);
-      const Layers::Range& under = (weft_over ? warp : weft).at(x, y);
+      const MaterialLayers::Range& over = (weft_over ? weft : warp).at(x, y);
+      const MaterialLayers::Range& under = (weft_over ? warp : weft).at(x, y);
       CHECK(over.lower > under.upper);
       CHECK(over.lower - under.upper < 0.1F * thickness);
       CHECK(over.upper - over.lower == Approx(thickness).epsilon(0.02));
@@ -274,22 +234,22 @@ TEST_CASE("yarns do not pass through each other, nor through the floor") {
   for (const char* plies : {"plies=0", "plies=3"}) {
     INFO(plies);
     const Mesostructure m = read("tissue", {plies});
-    const Layers weft(m.mesh, "weft");
-    const Layers warp(m.mesh, "warp");
+    const MaterialLayers weft(m.mesh, "weft");
+    const MaterialLayers warp(m.mesh, "warp");
     int both = 0;
     int mixed = 0;
     float lowest = 1;
-    for (int y = 0; y < Layers::size; ++y) {
-      for (int x = 0; x < Layers::size; ++x) {
-        const Layers::Range& a = weft.at(x, y);
-        const Layers::Range& b = warp.at(x, y);
+    for (int y = 0; y < MaterialLayers::size; ++y) {
+      for (int x = 0; x < MaterialLayers::size; ++x) {
+        const MaterialLayers::Range& a = weft.at(x, y);
+        const MaterialLayers::Range& b = warp.at(x, y);
         lowest = std::min({lowest, a.lower, b.lower});
         if (a.empty() || b.empty()) continue;
         ++both;
         mixed += a.lower < b.upper && b.lower < a.upper;
       }
     }
-    CHECK(both > Layers::size * Layers::size / 3);
+    CHECK(both > MaterialLayers::size * MaterialLayers::size / 3);
     CHECK(mixed == 0);
     CHECK(lowest > 0);
   }
