@@ -6,10 +6,12 @@ namespace weft {
 
 std::span<const MesostructureType> mesostructure_types() {
   static const std::vector<MesostructureType> types = {
-      checker_type(),  //
-      rings_type(),    //
-      tissue_type(),   //
-      weave_type(),
+      checker_type(),      //
+      rings_type(),        //
+      tissue_type(),       //
+      weave_type(),        //
+      corduroy_type(),     //
+      leather_type(),      //
       heightfield_type(),  //
       mesh_type(),         //
   };

@@ -9,6 +9,8 @@ MesostructureType checker_type();
 MesostructureType rings_type();
 MesostructureType tissue_type();
 MesostructureType weave_type();
+MesostructureType corduroy_type();
+MesostructureType leather_type();
 MesostructureType heightfield_type();
 MesostructureType mesh_type();
 
