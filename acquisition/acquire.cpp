@@ -27,8 +27,11 @@ BtfHeader header_of(const Mesostructure& mesostructure, const AcquisitionSetting
 }
 
 ViewTracer tracer_for(const Mesostructure& mesostructure, const AcquisitionSettings& settings,
-                      const HemisphereSampling& lights) {
-  return {mesostructure, {lights.directions().begin(), lights.directions().end()}, settings.trace};
+                      const BtfHeader& header) {
+  TraceSettings trace = settings.trace;
+  trace.views = header.views.size();
+  const std::span<const Direction> lights = header.lights.directions();
+  return {mesostructure, {lights.begin(), lights.end()}, trace};
 }
 
 // A set's name; for a file its content instead, since a path says nothing of what was traced.
@@ -64,7 +67,7 @@ AcquisitionReport acquire(const Mesostructure& mesostructure, const AcquisitionS
   const auto begin = std::chrono::steady_clock::now();
   const BtfHeader header = header_of(mesostructure, settings);
   check_elevations(header.views.directions(), "view");
-  const ViewTracer tracer = tracer_for(mesostructure, settings, header.lights);
+  const ViewTracer tracer = tracer_for(mesostructure, settings, header);
   BtfWriter writer(folder, header);
   std::vector<std::size_t> missing;
   for (std::size_t v = 0; v < header.views.size(); ++v) {
@@ -93,7 +96,7 @@ AcquisitionReport acquire(const Mesostructure& mesostructure, const AcquisitionS
 Btf acquire(const Mesostructure& mesostructure, const AcquisitionSettings& settings) {
   const BtfHeader header = header_of(mesostructure, settings);
   check_elevations(header.views.directions(), "view");
-  const ViewTracer tracer = tracer_for(mesostructure, settings, header.lights);
+  const ViewTracer tracer = tracer_for(mesostructure, settings, header);
   Btf btf(header.width, header.height, header.views, header.lights, header.pixel_type);
   btf.tile_size = header.tile_size;
   btf.provenance = header.provenance;

@@ -1,6 +1,7 @@
 #include "acquisition/path_block.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "tracer/sobol.h"
@@ -9,246 +10,331 @@ namespace weft {
 
 namespace {
 
-constexpr int samples_at_once = 64;  // of each texel in a block
-// Shadow rays of a group to this many lights go to Embree in one stream, which stays in the cache.
-constexpr std::size_t lights_at_once = 16;
 // A path of a closed, white inside (a ray that slipped between touching surfaces) would never end.
 constexpr int most_bounces = 4096;
 // Paths dimmer than this are ended by Russian roulette; needed only where bounces are unlimited.
 constexpr float dim_throughput = 0.02F;
-// Rays start this far off the surface, at coordinates around 1: about 40 float roundings.
-constexpr float offset_from_surface = 3e-6F;
+// One certain answer in so many is checked.
+constexpr std::uint32_t check_every = 256;
+constexpr std::uint32_t most_samples = 64;  // of each texel in a wave
+// Pairs of random numbers of a path: where in the texel, then three a bounce.
+constexpr std::uint64_t texel_pair = 0;
+constexpr std::uint64_t direction_pair(int bounce) {
+  return 3 * static_cast<std::uint64_t>(bounce) + 1;
+}
+constexpr std::uint64_t lobe_pair(int bounce) {
+  return 3 * static_cast<std::uint64_t>(bounce) + 2;
+}
+constexpr std::uint64_t check_pair(int bounce) {
+  return 3 * static_cast<std::uint64_t>(bounce) + 3;
+}
 
 }  // namespace
 
+int PathBlock::edge_for(std::size_t lights) {
+  if (lights <= 192) return 8;
+  return lights <= 768 ? 4 : 2;
+}
+
 PathBlock::PathBlock(const ViewTracer& tracer)
     : tracer_(tracer),
-      n_lights_(tracer.lights().size()),
-      contributions_(3 * group_size * n_lights_),
-      sums_(static_cast<std::size_t>(3 * edge * edge) * n_lights_),
-      group_sums_(error_groups * n_lights_) {
-  shadow_rays_.resize(group_size * lights_at_once);
-  shadow_owners_.resize(group_size * lights_at_once);
+      groups_(tracer.lights().groups()),
+      first_connections_(tracer.lights().size()),
+      later_connections_(tracer.lights().size()) {
+  const auto edge = static_cast<std::size_t>(edge_for(tracer.lights().size()));
+  const std::size_t values = edge * edge * groups_ * 3;
+  wave_.resize(values * most_groups);
+  sums_.resize(values * lanes);
+  squares_.resize(values * lanes);
+  grey_squares_.resize(values / 3 * lanes);
+  keys_.resize(edge * edge);
 }
 
 void PathBlock::trace(const Direction& view, std::uint64_t view_key, int left, int top) {
+  const TraceSettings& s = tracer_.settings();
+  const int edge = edge_for(tracer_.lights().size());
   std::fill(sums_.begin(), sums_.end(), 0.0);
-  std::fill(group_sums_.begin(), group_sums_.end(), 0.0);
+  std::fill(squares_.begin(), squares_.end(), 0.0);
+  std::fill(grey_squares_.begin(), grey_squares_.end(), 0.0);
   statistics_ = {};
   view_ = view;
-  view_key_ = view_key;
   left_ = left;
   top_ = top;
-  const int spp = tracer_.settings().spp;
-  for (int first = 0; first < spp; first += samples_at_once) {
-    start_paths(first, std::min(first + samples_at_once, spp));
+  columns_ = std::min(edge, s.width - left);
+  rows_ = std::min(edge, s.height - top);
+  for (int y = 0; y < rows_; ++y) {
+    for (int x = 0; x < columns_; ++x) {
+      const auto texel = static_cast<std::uint64_t>(top + y) * static_cast<std::uint64_t>(s.width) +
+                         static_cast<std::uint64_t>(left + x);
+      keys_[static_cast<std::size_t>(y) * columns_ + x] = hash_coordinates(s.seed, view_key, texel);
+    }
+  }
+  samples_ = s.spp;
+  sample_groups_ = 0;
+  const auto spp = static_cast<std::uint32_t>(s.spp);
+  group_size_ = std::clamp(spp / most_groups, 1U, most_samples / most_groups);
+  const std::uint32_t wave = group_size_ * most_groups;
+  for (first_sample_ = 0; first_sample_ < spp; first_sample_ += wave) {
+    const std::uint32_t end = std::min(first_sample_ + wave, spp);
+    start_paths(end);
     follow_paths();
+    fold_wave(end);
   }
 }
 
-std::uint64_t PathBlock::texel_number(std::size_t texel) const {
-  const auto x = static_cast<std::uint64_t>(left_) + texel % edge;
-  const auto y = static_cast<std::uint64_t>(top_) + texel / edge;
-  return y * static_cast<std::uint64_t>(tracer_.settings().width) + x;
+std::array<float, 2> PathBlock::stratified(const Path& path, std::uint64_t pair) const {
+  return sobol_point(path.sample, hash_coordinates(keys_[path.texel], pair));
 }
 
 std::array<float, 2> PathBlock::random(const Path& path, std::uint64_t pair) const {
-  return sobol_point(path.sample, hash_coordinates(tracer_.settings().seed, view_key_,
-                                                   texel_number(path.texel), pair));
+  const std::uint64_t bits = hash_coordinates(keys_[path.texel], pair, path.sample);
+  return {unit_float(bits), unit_float(bits << 32)};
 }
 
-void PathBlock::start_paths(int first_sample, int end_sample) {
+void PathBlock::start_paths(std::uint32_t end_sample) {
   const TraceSettings& s = tracer_.settings();
+  const PeriodicScene& scene = tracer_.scene();
   paths_.clear();
-  for (int y = 0; y < std::min(edge, s.height - top_); ++y) {
-    for (int x = 0; x < std::min(edge, s.width - left_); ++x) {
-      for (int sample = first_sample; sample < end_sample; ++sample) {
-        paths_.push_back({Rgb(1, 1, 1), -view_, 0, 0, 0, static_cast<std::uint16_t>(y * edge + x),
-                          static_cast<std::uint32_t>(sample)});
+  next_.clear();
+  const float start = scene.top() + 1e-3F * std::max(1.0F, std::abs(scene.top()));
+  const float back = (start - tracer_.mesostructure().reference_height) / view_.z;
+  for (int y = 0; y < rows_; ++y) {
+    for (int x = 0; x < columns_; ++x) {
+      for (std::uint32_t sample = first_sample_; sample < end_sample; ++sample) {
+        const Path path{Rgb(1, 1, 1), -view_, 0, 0, 0, static_cast<std::uint32_t>(y * columns_ + x),
+                        sample};
+        const auto [u, v] = stratified(path, texel_pair);
+        const float px = (static_cast<float>(left_ + x) + u) / static_cast<float>(s.width);
+        const float py = 1 - (static_cast<float>(top_ + y) + v) / static_cast<float>(s.height);
+        send(path,
+             Vec3(tile_fraction(px + view_.x * back), tile_fraction(py + view_.y * back), start),
+             Coherence::coherent);
       }
     }
   }
-  rays_.resize(std::max(rays_.size(), paths_.size()));
-  const PeriodicScene& scene = tracer_.scene();
-  const float start = scene.top() + 1e-3F * std::max(1.0F, std::abs(scene.top()));
-  const float back = (start - tracer_.mesostructure().reference_height) / view_.z;
-  for (std::size_t i = 0; i < paths_.size(); ++i) {
-    const auto [u, v] = random(paths_[i], 0);
-    const std::size_t texel = paths_[i].texel;
-    const float px = (static_cast<float>(left_ + static_cast<int>(texel % edge)) + u) /
-                     static_cast<float>(s.width);
-    const float py = 1 - (static_cast<float>(top_ + static_cast<int>(texel / edge)) + v) /
-                             static_cast<float>(s.height);
-    const Vec3 origin(tile_fraction(px + view_.x * back), tile_fraction(py + view_.y * back),
-                      start);
-    rays_.set(i, origin, -view_, 0, 0);
-  }
-  statistics_.paths += static_cast<std::int64_t>(paths_.size());
-  statistics_.primary_rays += static_cast<std::int64_t>(paths_.size());
-  const std::size_t started = paths_.size();
-  keep_hits(Coherence::coherent);
-  statistics_.missed += static_cast<std::int64_t>(started - paths_.size());
+  flush(Coherence::coherent);
+  const std::int64_t started =
+      static_cast<std::int64_t>(columns_) * rows_ * (end_sample - first_sample_);
+  statistics_.paths += started;
+  statistics_.primary_rays += started;
+  statistics_.missed += started - static_cast<std::int64_t>(next_.size());
 }
 
-void PathBlock::keep_hits(Coherence coherence) {
-  statistics_.rays_traced_on += tracer_.scene().intersect(rays_, paths_.size(), coherence);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < paths_.size(); ++i) {
-    if (rays_.mesh[i] == RayHit::none) continue;
-    Path path = paths_[i];
-    path.primitive = rays_.primitive[i];
-    path.u = rays_.u[i];
-    path.v = rays_.v[i];
-    paths_[kept++] = path;
+void PathBlock::send(const Path& path, const Vec3& origin, Coherence coherence) {
+  sent_[sent_count_] = path;
+  packet_.ray.set(sent_count_, origin, path.direction);
+  if (++sent_count_ == lanes) flush(coherence);
+}
+
+void PathBlock::flush(Coherence coherence) {
+  if (sent_count_ == 0) return;
+  const auto active = static_cast<std::uint16_t>((1U << sent_count_) - 1U);
+  statistics_.rays_traced_on += tracer_.scene().intersect(packet_, active, coherence);
+  for (std::size_t i = 0; i < sent_count_; ++i) {
+    if (packet_.mesh[i] == RayHit::none) continue;
+    Path& path = next_.emplace_back(sent_[i]);
+    path.facet = packet_.primitive[i];
+    path.u = packet_.u[i];
+    path.v = packet_.v[i];
   }
-  paths_.resize(kept);
+  sent_count_ = 0;
 }
 
 void PathBlock::follow_paths() {
   const int most = std::min(tracer_.settings().max_bounces, most_bounces);
-  for (int bounce = 0; !paths_.empty(); ++bounce) {
-    const Coherence coherence = bounce == 0 ? Coherence::coherent : Coherence::incoherent;
-    const bool last = bounce >= most;
-    next_.clear();
-    for (std::size_t begin = 0; begin < paths_.size(); begin += group_size) {
-      const std::size_t end = std::min(begin + group_size, paths_.size());
-      connect(begin, end, coherence);
-      if (!last) scatter(begin, end, bounce);
-    }
-    if (last) {
-      if (tracer_.settings().max_bounces == TraceSettings::unlimited)
-        statistics_.trapped += static_cast<std::int64_t>(paths_.size());
-      break;
-    }
+  for (int bounce = 0; !next_.empty(); ++bounce) {
     std::swap(paths_, next_);
-    for (std::size_t i = 0; i < paths_.size(); ++i) {
-      rays_.set(i, origins_[i], paths_[i].direction, 0, 0);
+    next_.clear();
+    const bool last = bounce >= most;
+    for (Path& path : paths_) {
+      Vertex vertex;
+      Vec3 origin;
+      if (!arrive(path, vertex, origin)) {
+        ++statistics_.degenerate;
+        continue;
+      }
+      connect(path, vertex, origin, bounce);
+      if (!last && scatter(path, vertex, bounce)) {
+        ++statistics_.bounce_rays;
+        send(path, origin, Coherence::incoherent);
+      }
     }
-    origins_.clear();
-    statistics_.bounce_rays += static_cast<std::int64_t>(paths_.size());
-    keep_hits(Coherence::incoherent);
+    flush(Coherence::incoherent);
+    if (bounce == 0) trace_connections(first_connections_, Coherence::coherent);
+    if (last && tracer_.settings().max_bounces == TraceSettings::unlimited)
+      statistics_.trapped += static_cast<std::int64_t>(paths_.size());
   }
-  paths_.clear();
+  trace_connections(later_connections_, Coherence::incoherent);
 }
 
-PathBlock::Vertex PathBlock::vertex_of(const Path& path) const {
+bool PathBlock::arrive(const Path& path, Vertex& vertex, Vec3& origin) const {
+  const Facet& facet = tracer_.facets()[path.facet];
+  if (facet.degenerate()) return false;
+  const bool behind = (facet.normal ^ path.direction) > 0;
+  vertex.facet_normal = behind ? -facet.normal : facet.normal;
+  vertex.normal = vertex.facet_normal;
   const TriangleMesh& mesh = tracer_.mesostructure().mesh;
-  const auto& [a, b, c] = mesh.triangles[path.primitive];
-  const Vec3 e1 = mesh.positions[b] - mesh.positions[a];
-  const Vec3 e2 = mesh.positions[c] - mesh.positions[a];
-  Vec3 facet = e1 % e2;
-  const float length = facet.length();
-  Vertex vertex;
-  vertex.material = mesh.materials[path.primitive];
-  if (!(length > 0)) {
-    vertex.facet_normal = Vec3(0, 0, 0);
-    return vertex;
-  }
-  facet /= length;
-  Vec3 shading = facet;
   if (!mesh.normals.empty()) {
-    shading = (mesh.normals[a] * (1 - path.u - path.v) + mesh.normals[b] * path.u +
-               mesh.normals[c] * path.v)
-                  .normalized();
+    const auto& [a, b, c] = mesh.triangles[path.facet];
+    const Vec3 shading = (mesh.normals[a] * (1 - path.u - path.v) + mesh.normals[b] * path.u +
+                          mesh.normals[c] * path.v)
+                             .normalized();
+    // One that faces away from the viewer has nothing to say: the facet's own is used.
+    const Vec3 turned = behind ? -shading : shading;
+    if ((turned ^ path.direction) < -1e-4F) vertex.normal = turned;
   }
-  if ((facet ^ path.direction) > 0) {
-    facet = -facet;
-    shading = -shading;
-  }
-  // A shading normal that faces away from the viewer has nothing to say: the facet's own is used.
-  if (!((shading ^ path.direction) < -1e-4F)) shading = facet;
-  Vec3 p = mesh.positions[a] + e1 * path.u + e2 * path.v;
-  const float largest = std::max({1.0F, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  p.x = tile_fraction(p.x);
-  p.y = tile_fraction(p.y);
-  vertex.origin = p + facet * (offset_from_surface * largest);
-  vertex.origin.x = tile_fraction(vertex.origin.x);
-  vertex.origin.y = tile_fraction(vertex.origin.y);
-  vertex.facet_normal = facet;
-  vertex.frame = frame_around(shading);
-  vertex.view = vertex.frame.to_local(-path.direction);
-  return vertex;
+  vertex.bsdf = &tracer_.mesostructure().materials[facet.material];
+  vertex.answers =
+      behind ? tracer_.visibility().unknown() : tracer_.visibility().at(path.facet, path.u, path.v);
+  origin = ray_origin(facet.point(path.u, path.v), vertex.facet_normal);
+  return true;
 }
 
-void PathBlock::connect(std::size_t begin, std::size_t end, Coherence coherence) {
-  for (std::size_t i = begin; i < end; ++i) {
-    vertices_[i - begin] = vertex_of(paths_[i]);
-    reflect_lights(paths_[i], vertices_[i - begin],
-                   std::span(contributions_).subspan(3 * (i - begin) * n_lights_, 3 * n_lights_));
-  }
-  for (std::size_t l = 0; l < n_lights_; l += lights_at_once) {
-    add_unoccluded(begin, end, l, std::min(l + lights_at_once, n_lights_), coherence);
-  }
-}
-
-void PathBlock::add_unoccluded(std::size_t begin, std::size_t end, std::size_t first,
-                               std::size_t last, Coherence coherence) {
-  std::size_t count = 0;
-  for (std::size_t l = first; l < last; ++l) {
-    for (std::size_t k = 0; k < end - begin; ++k) {
-      const float* value = &contributions_[3 * (k * n_lights_ + l)];
-      // A value that is not a number goes on, to be refused where the view is stored.
-      if (!(value[0] + value[1] + value[2] <= 0)) {
-        shadow_rays_.set(count, vertices_[k].origin, tracer_.lights()[l], 0, 0);
-        shadow_owners_[count++] = {static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(l)};
+void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce) {
+  const LightSet& lights = tracer_.lights();
+  const bool lambert = vertex.bsdf->kind() == Bsdf::Kind::lambert;
+  const Frame frame = frame_around(vertex.normal);
+  const Bsdf::ViewTerms terms = vertex.bsdf->view_terms(frame.to_local(-path.direction));
+  const std::uint32_t checked =
+      static_cast<std::uint32_t>(
+          hash_coordinates(keys_[path.texel], check_pair(bounce), path.sample) >> 32) %
+      check_every;
+  ShadowQueue& queue = bounce == 0 ? first_connections_ : later_connections_;
+  const std::uint32_t sums = slot(path);
+  FloatLanes* wave = &wave_[sums * groups_ * 3];
+  for (std::size_t g = 0; g < groups_; ++g, wave += 3) {
+    const Vec3Lanes& group = lights.group(g);
+    Vec3Lanes local{};
+    local.z = dot(vertex.normal, group);
+    if (!lambert) {
+      local.x = dot(frame.x, group);
+      local.y = dot(frame.y, group);
+    }
+    RgbLanes value = vertex.bsdf->evaluate(local, terms);
+    const IntLanes facing = dot(vertex.facet_normal, group) > 0;
+    const FloatLanes zero{};
+    value.r = select(facing, value.r * path.throughput.x, zero);
+    value.g = select(facing, value.g * path.throughput.y, zero);
+    value.b = select(facing, value.b * path.throughput.z, zero);
+    const auto [known, visible] = vertex.answers[g];
+    const IntLanes arrives = lanes_of_bits(visible);
+    wave[0] += select(arrives, value.r, zero);
+    wave[1] += select(arrives, value.g, zero);
+    wave[2] += select(arrives, value.b, zero);
+    // A value that is not a number goes on, to be refused where the view is stored.
+    const auto asked = static_cast<std::uint16_t>(lights.used_lanes(g) &
+                                                  ~bits_of_lanes(value.r + value.g + value.b <= 0));
+    statistics_.visibility_queries += std::popcount(unsigned{asked});
+    for (unsigned left = asked & ~known; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      queue.add(g * lanes + static_cast<std::size_t>(i),
+                {origin, sums, ShadowQueue::Answer::unknown, value.r[i], value.g[i], value.b[i]});
+    }
+    // Light l is checked where l % 256 is the number drawn: each with a chance of 1 / 256.
+    const std::size_t first = g * lanes % check_every;
+    if (checked >= first && checked < first + lanes) {
+      const auto i = static_cast<int>(checked - first);
+      if (((asked & known) >> i & 1) != 0) {
+        queue.add(
+            g * lanes + static_cast<std::size_t>(i),
+            {origin, sums,
+             (visible >> i & 1) != 0 ? ShadowQueue::Answer::visible : ShadowQueue::Answer::hidden,
+             value.r[i], value.g[i], value.b[i]});
       }
     }
   }
-  statistics_.shadow_rays += static_cast<std::int64_t>(count);
-  statistics_.rays_traced_on += tracer_.scene().occluded(shadow_rays_, count, coherence);
-  for (std::size_t r = 0; r < count; ++r) {
-    if (shadow_rays_.tfar[r] < 0) continue;
-    const auto [k, l] = shadow_owners_[r];
-    const Path& path = paths_[begin + k];
-    const float* value = &contributions_[3 * (k * n_lights_ + l)];
-    double* sum = &sums_[3 * (path.texel * n_lights_ + l)];
-    for (int c = 0; c < 3; ++c) sum[c] += value[c];
-    group_sums_[(path.sample % error_groups) * n_lights_ + l] +=
-        (static_cast<double>(value[0]) + value[1] + value[2]) / 3;
-  }
 }
 
-void PathBlock::reflect_lights(const Path& path, const Vertex& vertex,
-                               std::span<float> contributions) {
-  if (vertex.facet_normal == Vec3(0, 0, 0)) {
-    ++statistics_.degenerate;
-    std::fill(contributions.begin(), contributions.end(), 0.0F);
-    return;
-  }
-  const Bsdf& bsdf = tracer_.mesostructure().materials[vertex.material];
-  for (std::size_t l = 0; l < n_lights_; ++l) {
-    const Direction& light = tracer_.lights()[l];
-    Rgb value(0, 0, 0);
-    if ((vertex.facet_normal ^ light) > 0) {
-      value = bsdf.evaluate(vertex.frame.to_local(light), vertex.view) * path.throughput;
+void PathBlock::trace_connections(ShadowQueue& queue, Coherence coherence) {
+  const auto add = [&](std::size_t light, const ShadowQueue::Connection& c, float weight) {
+    FloatLanes* wave = &wave_[(c.slot * groups_ + light / lanes) * 3];
+    wave[0][light % lanes] += weight * c.r;
+    wave[1][light % lanes] += weight * c.g;
+    wave[2][light % lanes] += weight * c.b;
+  };
+  const auto arrive = [&](std::size_t light, const ShadowQueue::Connection& c, bool visible) {
+    ++statistics_.shadow_rays;
+    if (c.answer == ShadowQueue::Answer::unknown) {
+      if (visible) add(light, c, 1);
+      return;
     }
-    std::copy_n(&value.x, 3, contributions.begin() + static_cast<std::ptrdiff_t>(3 * l));
-  }
+    ++statistics_.answers_checked;
+    if (visible == (c.answer == ShadowQueue::Answer::visible)) return;
+    ++statistics_.wrong_answers;
+    add(light, c, visible ? check_every : -static_cast<float>(check_every));
+  };
+  statistics_.rays_traced_on +=
+      queue.trace(tracer_.scene(), tracer_.lights().directions(), coherence, arrive);
 }
 
-void PathBlock::scatter(std::size_t begin, std::size_t end, int bounce) {
-  for (std::size_t i = begin; i < end; ++i) {
-    const Vertex& vertex = vertices_[i - begin];
-    if (vertex.facet_normal == Vec3(0, 0, 0)) continue;
-    Path path = paths_[i];
-    const std::uint64_t pair = 2 * static_cast<std::uint64_t>(bounce) + 1;
-    const auto [u, v] = random(path, pair);
-    const auto [lobe, roulette] = random(path, pair + 1);
-    const Bsdf::Sample sample =
-        tracer_.mesostructure().materials[vertex.material].sample(vertex.view, {lobe, u, v});
-    if (std::isnan(sample.pdf)) ++statistics_.invalid;
-    if (!(sample.pdf > 0)) continue;
-    path.direction = vertex.frame.to_world(sample.light).normalized();
-    if (!((path.direction ^ vertex.facet_normal) > 0)) continue;
-    path.throughput *= sample.weight;
+bool PathBlock::scatter(Path& path, const Vertex& vertex, int bounce) {
+  const Frame frame = frame_around(vertex.normal);
+  const auto [u, v] =
+      bounce == 0 ? stratified(path, direction_pair(bounce)) : random(path, direction_pair(bounce));
+  const bool lambert = vertex.bsdf->kind() == Bsdf::Kind::lambert;
+  const bool dim = max_component(path.throughput) < dim_throughput;
+  std::array<float, 2> others{0, 0};  // lobe, roulette
+  if (!lambert || dim) {
+    others = bounce == 0 ? stratified(path, lobe_pair(bounce)) : random(path, lobe_pair(bounce));
+  }
+  const Bsdf::Sample sample =
+      vertex.bsdf->sample(frame.to_local(-path.direction), {others[0], u, v});
+  if (std::isnan(sample.pdf)) ++statistics_.invalid;
+  if (!(sample.pdf > 0)) return false;
+  path.direction = frame.to_world(sample.light).normalized();
+  if (!((path.direction ^ vertex.facet_normal) > 0)) return false;
+  if (dim) {
     const float brightness = max_component(path.throughput);
-    if (brightness < dim_throughput) {
-      if (!(roulette * dim_throughput < brightness)) continue;
-      path.throughput *= dim_throughput / brightness;
-    }
-    next_.push_back(path);
-    origins_.push_back(vertex.origin);
+    if (!(others[1] * dim_throughput < brightness)) return false;
+    path.throughput *= dim_throughput / brightness;
   }
+  path.throughput *= sample.weight;
+  return max_component(path.throughput) > 0;
+}
+
+void PathBlock::fold_wave(std::uint32_t end_sample) {
+  const std::uint32_t samples = end_sample - first_sample_;
+  const std::uint32_t groups = (samples + group_size_ - 1) / group_size_;
+  sample_groups_ += static_cast<int>(groups);
+  const auto texels = static_cast<std::size_t>(columns_) * rows_;
+  for (std::size_t texel = 0; texel < texels; ++texel) {
+    for (std::uint32_t s = 0; s < groups; ++s) {
+      const double inverse = 1.0 / std::min(group_size_, samples - s * group_size_);
+      for (std::size_t g = 0; g < groups_; ++g) {
+        FloatLanes* wave = &wave_[((texel * most_groups + s) * groups_ + g) * 3];
+        double* sums = &sums_[(texel * groups_ + g) * 3 * lanes];
+        double* squares = &squares_[(texel * groups_ + g) * 3 * lanes];
+        double* grey_squares = &grey_squares_[(texel * groups_ + g) * lanes];
+        for (std::size_t k = 0; k < lanes; ++k) {
+          double grey = 0;
+          for (std::size_t c = 0; c < 3; ++c) {
+            const double value = wave[c][k];
+            sums[c * lanes + k] += value;
+            squares[c * lanes + k] += value * value * inverse;
+            grey += value / 3;
+          }
+          grey_squares[k] += grey * grey * inverse;
+        }
+        std::fill_n(wave, 3, FloatLanes{});
+      }
+    }
+  }
+}
+
+// From sum over groups of S^2 / n, S a group's sum of n samples, and the sum of all N samples.
+double PathBlock::variance_of(double squares, double sum) const {
+  return std::max(0.0, squares - sum * sum / samples_) / (sample_groups_ - 1) / samples_;
+}
+
+double PathBlock::variance(std::size_t texel, std::size_t light, int channel) const {
+  const std::size_t i = place(texel, light, channel);
+  return variance_of(squares_[i], sums_[i]);
+}
+
+double PathBlock::grey_variance(std::size_t texel, std::size_t light) const {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) sum += sums_[place(texel, light, c)] / 3;
+  return variance_of(grey_squares_[texel * groups_ * lanes + light], sum);
 }
 
 }  // namespace weft

@@ -1,12 +1,17 @@
 // The paths of one block of texels, traced wave by wave.
+//
+// A wave holds some samples of all the block's texels. Its paths meet the surface, are connected to
+// every light at once, and go on together. Where the visibility table is certain, it
+// answers for the light; one such answer in 256 is traced all the same, and where it was wrong, the
+// difference is added 256 times: so the mean is that of tracing everything.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include "acquisition/shadow_queue.h"
 #include "acquisition/view_tracer.h"
 #include "tracer/frame.h"
 
@@ -15,9 +20,8 @@ namespace weft {
 /// Holds its memory between blocks; one a thread.
 class PathBlock {
  public:
-  static constexpr int edge = 8;  ///< texels
-  static constexpr int error_groups =
-      16;  ///< groups of samples whose spread gives the standard errors
+  /// Texels a side of a block: fewer where the lights are many, so that the sums stay in the cache.
+  static int edge_for(std::size_t lights);
 
   /// @param tracer  outlives the block.
   explicit PathBlock(const ViewTracer& tracer);
@@ -26,72 +30,90 @@ class PathBlock {
   /// the last call.
   void trace(const Direction& view, std::uint64_t view_key, int left, int top);
 
-  /// Sum over the samples, of a texel of the block (row * edge + column) and a light.
-  Imath::V3d sum(std::size_t texel, std::size_t light) const {
-    const double* p = &sums_[3 * (texel * n_lights_ + light)];
-    return {p[0], p[1], p[2]};
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  /// Mean over the samples of a texel of the block (row * columns + column), for a light and a
+  /// channel.
+  double mean(std::size_t texel, std::size_t light, int channel) const {
+    return sums_[place(texel, light, channel)] / samples_;
   }
-  /// [group of samples][light]: sums of the mean of RGB over texels and samples.
-  const std::vector<double>& group_sums() const { return group_sums_; }
+  /// Variance of that mean, from the spread of groups of samples; conservative, as stratification
+  /// between groups is not credited. Needs two groups.
+  double variance(std::size_t texel, std::size_t light, int channel) const;
+  /// The same of the mean of RGB.
+  double grey_variance(std::size_t texel, std::size_t light) const;
   const TraceStatistics& statistics() const { return statistics_; }
 
  private:
-  static constexpr std::size_t group_size = 64;  // paths that are connected to the lights together
+  static constexpr std::uint32_t most_groups = 4;  // of samples, in a wave
 
   struct Path {
     Rgb throughput;
     Vec3 direction;  // of the ray that arrives
-    std::uint32_t primitive;
+    std::uint32_t facet;
     float u, v;
-    std::uint16_t texel;  // within the block
+    std::uint32_t texel;  // of the block
     std::uint32_t sample;
   };
 
-  // Where a path has arrived; z of the frame is the shading normal on the viewer's side. A triangle
-  // without an area has no normal: it is zero.
+  // Where a path has arrived. `normal` is the shading normal on the viewer's side.
   struct Vertex {
-    Vec3 origin;  // of rays that leave, off the surface
-    Vec3 facet_normal;
-    Frame frame;
-    Direction view;  // in the frame
-    std::uint16_t material;
+    Vec3 facet_normal;  // on the viewer's side
+    Vec3 normal;
+    const Bsdf* bsdf = nullptr;
+    const VisibilityTable::Answer* answers = nullptr;
   };
 
-  std::uint64_t texel_number(std::size_t texel) const;
+  std::size_t place(std::size_t texel, std::size_t light, int channel) const {
+    return ((texel * groups_ + light / lanes) * 3 + static_cast<std::size_t>(channel)) * lanes +
+           light % lanes;
+  }
+
   // Two numbers of a pair of dimensions, for a path.
+  std::array<float, 2> stratified(const Path& path, std::uint64_t pair) const;
   std::array<float, 2> random(const Path& path, std::uint64_t pair) const;
-  void start_paths(int first_sample, int end_sample);
-  // Traces the rays of all paths and drops the paths that escape.
-  void keep_hits(Coherence coherence);
+  // Which sums of the wave a path adds to.
+  std::uint32_t slot(const Path& path) const {
+    return path.texel * most_groups + (path.sample - first_sample_) / group_size_;
+  }
+  void start_paths(std::uint32_t end_sample);
+  // Traces the ray that `path` is to follow, packet by packet; keeps the paths that hit.
+  void send(const Path& path, const Vec3& origin, Coherence coherence);
+  void flush(Coherence coherence);
   void follow_paths();
-  Vertex vertex_of(const Path& path) const;
-  // Adds the light that the vertices of paths [begin, end) reflect directly, from every light.
-  void connect(std::size_t begin, std::size_t end, Coherence coherence);
-  // Traces the shadow rays of paths [begin, end) to lights [first, last), light by light, and adds
-  // what arrives.
-  void add_unoccluded(std::size_t begin, std::size_t end, std::size_t first, std::size_t last,
-                      Coherence coherence);
-  // Writes throughput * f * cos for every light, [light][rgb]; 0 for those behind the facet.
-  void reflect_lights(const Path& path, const Vertex& vertex, std::span<float> contributions);
-  // Draws where paths [begin, end), whose vertices are known, go on.
-  void scatter(std::size_t begin, std::size_t end, int bounce);
+  // False for a triangle without an area.
+  bool arrive(const Path& path, Vertex& vertex, Vec3& origin) const;
+  // Adds the light that the path's vertex reflects directly, from every light.
+  void connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce);
+  void trace_connections(ShadowQueue& queue, Coherence coherence);
+  // Draws where a path goes on. False where it ends.
+  bool scatter(Path& path, const Vertex& vertex, int bounce);
+  void fold_wave(std::uint32_t end_sample);
+  double variance_of(double squares, double sum) const;
 
   const ViewTracer& tracer_;
-  std::size_t n_lights_;
+  std::size_t groups_;  // of sixteen lights
   Direction view_;
-  std::uint64_t view_key_ = 0;
   int left_ = 0;
   int top_ = 0;
+  int columns_ = 0;
+  int rows_ = 0;
+  int samples_ = 0;
+  int sample_groups_ = 0;            // so far
+  std::uint32_t group_size_ = 1;     // samples
+  std::uint32_t first_sample_ = 0;   // of the wave
+  std::vector<std::uint64_t> keys_;  // of each texel, for its random numbers
   std::vector<Path> paths_;
   std::vector<Path> next_;
-  std::vector<Vec3> origins_;
-  RayStream rays_;
-  std::array<Vertex, group_size> vertices_;
-  std::vector<float> contributions_;  // [path of the group][light][rgb]
-  RayStream shadow_rays_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> shadow_owners_;  // path of the group, light
-  std::vector<double> sums_;                                            // [texel][light][rgb]
-  std::vector<double> group_sums_;
+  std::array<Path, lanes> sent_;
+  HitPacket packet_{};
+  std::size_t sent_count_ = 0;
+  ShadowQueue first_connections_;
+  ShadowQueue later_connections_;     // of paths that were reflected before
+  std::vector<FloatLanes> wave_;      // [slot][group][channel]
+  std::vector<double> sums_;          // [texel][group][channel][lane]
+  std::vector<double> squares_;       // of the sample groups' sums, over their samples
+  std::vector<double> grey_squares_;  // [texel][group][lane], of the mean of RGB
   TraceStatistics statistics_;
 };
 

@@ -89,13 +89,6 @@ RayScene scene_of(const TriangleMesh& mesh, int reach) {
   return RayScene(pointers);
 }
 
-Vec3 origin_of(const RayStream& rays, std::size_t i) {
-  return {rays.ox[i], rays.oy[i], rays.oz[i]};
-}
-Vec3 direction_of(const RayStream& rays, std::size_t i) {
-  return {rays.dx[i], rays.dy[i], rays.dz[i]};
-}
-
 }  // namespace
 
 PeriodicScene::PeriodicScene(const TriangleMesh& tile)
@@ -124,58 +117,82 @@ PeriodicScene::Exit PeriodicScene::exit(const Vec3& origin, const Vec3& directio
   return {std::max(level, 0.0F), false};
 }
 
-void PeriodicScene::bound(RayStream& rays, std::size_t count) const {
-  for (std::size_t i = 0; i < count; ++i) {
-    rays.tfar[i] = exit(origin_of(rays, i), direction_of(rays, i)).distance;
-  }
+// The same for sixteen, into tfar. Returns the rays that leave sideways.
+std::uint16_t PeriodicScene::bound(RayPacket& packet) const {
+  const auto reach = [](const FloatLanes& origin, const FloatLanes& direction, float low,
+                        float high) {
+    const FloatLanes edge = select(direction > 0, all_lanes(high), all_lanes(low));
+    return select(direction == 0, all_lanes(infinity), (edge - origin) / direction);
+  };
+  const FloatLanes side = smaller(reach(packet.ox, packet.dx, low_.x, high_.x),
+                                  reach(packet.oy, packet.dy, low_.y, high_.y));
+  const FloatLanes level = reach(packet.oz, packet.dz, bottom_ - margin_, top_ + margin_);
+  packet.tfar = larger(smaller(side, level), 0.0F);
+  return bits_of_lanes(side < level);
 }
 
-// Follows ray i, which left the copies without a hit, tile by tile. Its hit is written into the
-// stream.
-std::int64_t PeriodicScene::trace_on(RayStream& rays, std::size_t i) const {
-  const Vec3 direction = direction_of(rays, i);
-  Vec3 origin = origin_of(rays, i);
+// Follows a ray that left the copies without a hit, tile by tile.
+PeriodicScene::TracedOn PeriodicScene::trace_on(Vec3 origin, const Vec3& direction) const {
   Exit end = exit(origin, direction);
-  std::int64_t traced = 0;
-  while (end.sideways && traced < max_moves) {
+  TracedOn result;
+  while (end.sideways && result.rays < max_moves && !result.hit.hit()) {
     origin += direction * std::max(0.0F, end.distance - step_back);
     origin.x = tile_fraction(origin.x);
     origin.y = tile_fraction(origin.y);
     end = exit(origin, direction);
-    ++traced;
-    const RayHit hit = scene_.intersect(origin, direction, 0, end.distance);
-    if (hit.hit()) {
-      rays.mesh[i] = hit.mesh;
-      rays.primitive[i] = hit.primitive;
-      rays.u[i] = hit.u;
-      rays.v[i] = hit.v;
-      rays.tfar[i] = -infinity;
-      break;
-    }
+    ++result.rays;
+    result.hit = scene_.intersect(origin, direction, 0, end.distance);
   }
-  return traced;
+  return result;
 }
 
-std::int64_t PeriodicScene::intersect(RayStream& rays, std::size_t count,
+namespace {
+
+Vec3 origin_of(const RayPacket& packet, int i) {
+  return {packet.ox[i], packet.oy[i], packet.oz[i]};
+}
+Vec3 direction_of(const RayPacket& packet, int i) {
+  return {packet.dx[i], packet.dy[i], packet.dz[i]};
+}
+
+}  // namespace
+
+std::int64_t PeriodicScene::intersect(HitPacket& packet, std::uint16_t active,
                                       Coherence coherence) const {
-  bound(rays, count);
-  scene_.intersect(rays, count, coherence);
+  const std::uint16_t sideways = bound(packet.ray) & active;
+  scene_.intersect(packet, active, coherence);
+  if (sideways == 0) return 0;
   std::int64_t traced_on = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (rays.mesh[i] == RayHit::none) traced_on += trace_on(rays, i);
+  for (int i = 0; i < lanes; ++i) {
+    if ((sideways >> i & 1U) == 0 || packet.mesh[i] != RayHit::none) continue;
+    const TracedOn on = trace_on(origin_of(packet.ray, i), direction_of(packet.ray, i));
+    packet.mesh[i] = on.hit.mesh;
+    packet.primitive[i] = on.hit.primitive;
+    packet.u[i] = on.hit.u;
+    packet.v[i] = on.hit.v;
+    traced_on += on.rays;
   }
   return traced_on;
 }
 
-std::int64_t PeriodicScene::occluded(RayStream& rays, std::size_t count,
+std::int64_t PeriodicScene::occluded(RayPacket& packet, std::uint16_t active,
                                      Coherence coherence) const {
-  bound(rays, count);
-  scene_.occluded(rays, count, coherence);
+  const std::uint16_t sideways = bound(packet) & active;
+  scene_.occluded(packet, active, coherence);
+  if (sideways == 0) return 0;
   std::int64_t traced_on = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (rays.tfar[i] >= 0) traced_on += trace_on(rays, i);
+  for (int i = 0; i < lanes; ++i) {
+    if ((sideways >> i & 1U) == 0 || packet.tfar[i] < 0) continue;
+    const TracedOn on = trace_on(origin_of(packet, i), direction_of(packet, i));
+    if (on.hit.hit()) packet.tfar[i] = -infinity;
+    traced_on += on.rays;
   }
   return traced_on;
+}
+
+RayHit PeriodicScene::intersect(const Vec3& origin, const Vec3& direction) const {
+  const RayHit hit = scene_.intersect(origin, direction, 0, exit(origin, direction).distance);
+  return hit.hit() ? hit : trace_on(origin, direction).hit;
 }
 
 }  // namespace weft

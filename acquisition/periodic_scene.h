@@ -29,23 +29,30 @@ class PeriodicScene {
   float bottom() const { return bottom_; }
   float top() const { return top_; }
 
-  /// Nearest hits of the first `count` rays, whose origins have x, y in [0, 1] and whose tnear is
-  /// 0; tfar is set here. `primitive`, `u`, `v` name the hit on the tile's own triangle; mesh is
-  /// RayHit::none for a miss.
+  /// Nearest hits of the rays whose bit of `active` is set. Their origins have x, y in [0, 1];
+  /// tnear and tfar are set here. `primitive`, `u`, `v` name the hit on the tile's own triangle;
+  /// mesh is RayHit::none for a miss.
   /// @returns how many single rays were traced on after leaving the copies.
-  std::int64_t intersect(RayStream& rays, std::size_t count, Coherence coherence) const;
+  std::int64_t intersect(HitPacket& packet, std::uint16_t active, Coherence coherence) const;
 
   /// The same for occlusion: tfar < 0 afterwards where something is in the way.
-  std::int64_t occluded(RayStream& rays, std::size_t count, Coherence coherence) const;
+  std::int64_t occluded(RayPacket& packet, std::uint16_t active, Coherence coherence) const;
+
+  /// The same for one ray. `distance` is not that to the hit where it was traced on.
+  RayHit intersect(const Vec3& origin, const Vec3& direction) const;
 
  private:
   struct Exit {
     float distance;
     bool sideways;
   };
+  struct TracedOn {
+    RayHit hit;
+    std::int64_t rays = 0;
+  };
   Exit exit(const Vec3& origin, const Vec3& direction) const;
-  void bound(RayStream& rays, std::size_t count) const;
-  std::int64_t trace_on(RayStream& rays, std::size_t i) const;
+  std::uint16_t bound(RayPacket& packet) const;
+  TracedOn trace_on(Vec3 origin, const Vec3& direction) const;
 
   float bottom_;
   float top_;

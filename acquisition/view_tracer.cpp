@@ -25,6 +25,10 @@ TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
   primary_rays += other.primary_rays;
   bounce_rays += other.bounce_rays;
   shadow_rays += other.shadow_rays;
+  visibility_queries += other.visibility_queries;
+  answers_checked += other.answers_checked;
+  wrong_answers += other.wrong_answers;
+  negative += other.negative;
   rays_traced_on += other.rays_traced_on;
   missed += other.missed;
   degenerate += other.degenerate;
@@ -44,13 +48,35 @@ void check_elevations(std::span<const Direction> directions, const std::string& 
   }
 }
 
+namespace {
+
+// The table is worth its rays where paths that each ask for every light are this many times those
+// of the table.
+constexpr double paths_a_ray = 2;
+constexpr double table_bytes = 512e6;
+
+VisibilityTable table_for(const std::vector<Facet>& facets, const LightSet& lights,
+                          const PeriodicScene& scene, const TraceSettings& s) {
+  const auto cells = static_cast<double>(VisibilityTable::cells_of(facets));
+  const double paths = static_cast<double>(s.views) * s.width * s.height * s.spp;
+  const double bytes =
+      cells * static_cast<double>(lights.groups() * sizeof(VisibilityTable::Answer));
+  const int rays = static_cast<int>(std::min(4.0, paths / (paths_a_ray * cells)));
+  if (rays < 1 || bytes > table_bytes) return {facets, lights};
+  return {facets, lights, scene, rays};
+}
+
+}  // namespace
+
 ViewTracer::ViewTracer(Mesostructure mesostructure, std::vector<Direction> lights,
                        TraceSettings settings)
     : mesostructure_(std::move(mesostructure)),
       lights_(std::move(lights)),
       settings_(settings),
-      scene_(mesostructure_.mesh) {
-  check_elevations(lights_, "light");
+      scene_(mesostructure_.mesh),
+      facets_(facets_of(mesostructure_.mesh)),
+      visibility_(table_for(facets_, lights_, scene_, settings_)) {
+  check_elevations(lights_.directions(), "light");
   if (settings_.spp < 1)
     throw bad_input("--spp", fmt::format("is {}; expected at least 1", settings_.spp));
   if (settings_.width < 1 || settings_.height < 1) {
@@ -63,62 +89,42 @@ ViewTracer::ViewTracer(Mesostructure mesostructure, std::vector<Direction> light
   }
 }
 
-namespace {
-
-// From the sums of groups of samples over the whole tile: the spread of their means.
-std::vector<float> standard_errors(const std::vector<double>& group_sums, std::size_t n_lights,
-                                   int spp, double texels) {
-  if (spp < 2) return {};
-  const int groups = std::min(PathBlock::error_groups, spp);
-  std::vector<float> errors(n_lights);
-  for (std::size_t l = 0; l < n_lights; ++l) {
-    double sum = 0;
-    double sum_of_squares = 0;
-    for (int g = 0; g < groups; ++g) {
-      const int samples =
-          spp / PathBlock::error_groups + (g < spp % PathBlock::error_groups ? 1 : 0);
-      const double mean =
-          group_sums[static_cast<std::size_t>(g) * n_lights + l] / (samples * texels);
-      sum += mean;
-      sum_of_squares += mean * mean;
-    }
-    const double variance = std::max(0.0, sum_of_squares - sum * sum / groups) / (groups - 1);
-    errors[l] = static_cast<float>(std::sqrt(variance / groups));
-  }
-  return errors;
-}
-
-}  // namespace
-
 TracedView ViewTracer::trace(const Direction& view, std::uint64_t view_key) const {
   check_elevations({&view, 1}, "view");
-  const int columns = (settings_.width + PathBlock::edge - 1) / PathBlock::edge;
-  const int rows = (settings_.height + PathBlock::edge - 1) / PathBlock::edge;
+  const int edge = PathBlock::edge_for(lights_.size());
+  const int columns = (settings_.width + edge - 1) / edge;
+  const int rows = (settings_.height + edge - 1) / edge;
   const std::size_t texels = static_cast<std::size_t>(settings_.width) * settings_.height;
   const auto blocks = static_cast<std::size_t>(columns) * rows;
+  const bool with_errors = settings_.spp > 1;
   TracedView traced;
   traced.values.resize(3 * lights_.size() * texels);
-  std::vector<std::vector<double>> group_sums(blocks);
+  std::vector<std::vector<double>> variances(blocks);  // of each light's sum over the block
   std::vector<TraceStatistics> statistics(blocks);
   tbb::enumerable_thread_specific<PathBlock> workers([&] { return PathBlock(*this); });
   const auto trace_block = [&](std::size_t b) {
     PathBlock& block = workers.local();
-    const int left = static_cast<int>(b) % columns * PathBlock::edge;
-    const int top = static_cast<int>(b) / columns * PathBlock::edge;
+    const int left = static_cast<int>(b) % columns * edge;
+    const int top = static_cast<int>(b) / columns * edge;
     block.trace(view, view_key, left, top);
-    for (int y = top; y < std::min(top + PathBlock::edge, settings_.height); ++y) {
-      for (int x = left; x < std::min(left + PathBlock::edge, settings_.width); ++x) {
-        const auto texel = static_cast<std::size_t>((y - top) * PathBlock::edge + x - left);
-        for (std::size_t l = 0; l < lights_.size(); ++l) {
-          const Imath::V3d mean = block.sum(texel, l) / settings_.spp;
-          float* out =
-              &traced.values[3 * (l * texels + static_cast<std::size_t>(y) * settings_.width + x)];
-          for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(mean[c]);
+    variances[b].resize(lights_.size());
+    for (std::size_t l = 0; l < lights_.size(); ++l) {
+      for (int y = 0; y < block.rows(); ++y) {
+        float* out =
+            &traced.values[3 * (l * texels + static_cast<std::size_t>(top + y) * settings_.width +
+                                static_cast<std::size_t>(left))];
+        for (int x = 0; x < block.columns(); ++x, out += 3) {
+          const auto texel = static_cast<std::size_t>(y) * block.columns() + x;
+          for (int c = 0; c < 3; ++c) {
+            const double mean = block.mean(texel, l, c);
+            out[c] = mean < 0 ? 0.0F : static_cast<float>(mean);
+            statistics[b].negative += mean < 0 ? 1 : 0;
+          }
+          if (with_errors) variances[b][l] += block.grey_variance(texel, l);
         }
       }
     }
-    group_sums[b] = block.group_sums();
-    statistics[b] = block.statistics();
+    statistics[b] += block.statistics();
   };
   // Isolated: a thread that waits here must not begin another view, whose memory would come on top.
   // With a context of its own: where another view fails, TBB would otherwise cancel this one's
@@ -126,13 +132,15 @@ TracedView ViewTracer::trace(const Direction& view, std::uint64_t view_key) cons
   tbb::task_group_context context(tbb::task_group_context::isolated);
   tbb::this_task_arena::isolate(
       [&] { tbb::parallel_for(std::size_t{0}, blocks, trace_block, context); });
-  std::vector<double> sums(PathBlock::error_groups * lights_.size());
-  for (std::size_t b = 0; b < blocks; ++b) {
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += group_sums[b][i];
-    traced.statistics += statistics[b];
+  for (const TraceStatistics& s : statistics) traced.statistics += s;
+  if (!with_errors) return traced;
+  // Texels draw their numbers apart from each other, so their variances add up.
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    double sum = 0;
+    for (std::size_t b = 0; b < blocks; ++b) sum += variances[b][l];
+    traced.standard_errors.push_back(
+        static_cast<float>(std::sqrt(sum) / static_cast<double>(texels)));
   }
-  traced.standard_errors =
-      standard_errors(sums, lights_.size(), settings_.spp, static_cast<double>(texels));
   return traced;
 }
 

@@ -9,8 +9,11 @@
 #include <limits>
 #include <vector>
 
+#include "acquisition/facets.h"
+#include "acquisition/light_set.h"
 #include "acquisition/mesostructure.h"
 #include "acquisition/periodic_scene.h"
+#include "acquisition/visibility_table.h"
 
 namespace weft {
 
@@ -21,6 +24,8 @@ struct TraceSettings {
   int height = 64;
   int spp = 64;         ///< eye paths a (view, texel)
   int max_bounces = 8;  ///< reflections after the first, to 4,096; 0 is direct light
+  /// How many views are to be traced, on which it depends whether a visibility table pays.
+  std::size_t views = 1;
   std::uint64_t seed = 0;
 };
 
@@ -30,6 +35,12 @@ struct TraceStatistics {
   std::int64_t primary_rays = 0;
   std::int64_t bounce_rays = 0;
   std::int64_t shadow_rays = 0;
+  std::int64_t visibility_queries = 0;  ///< asked by the estimator: traced, or answered by a table
+  std::int64_t answers_checked = 0;     ///< certain answers that were traced all the same
+  std::int64_t wrong_answers = 0;       ///< of those
+  /// Means (texel, light, channel) that the correction of a wrong answer left below zero: stored as
+  /// 0.
+  std::int64_t negative = 0;
   std::int64_t rays_traced_on = 0;  ///< single rays for what left the copies of the tile
   std::int64_t missed = 0;          ///< paths whose first ray met nothing
   std::int64_t trapped =
@@ -61,17 +72,21 @@ class ViewTracer {
   /// The same bytes for any number of threads. @throws Error  for a view below 89.9 degrees.
   TracedView trace(const Direction& view, std::uint64_t view_key) const;
 
-  const std::vector<Direction>& lights() const { return lights_; }
+  const LightSet& lights() const { return lights_; }
   const TraceSettings& settings() const { return settings_; }
   const Mesostructure& mesostructure() const { return mesostructure_; }
 
   const PeriodicScene& scene() const { return scene_; }
+  const std::vector<Facet>& facets() const { return facets_; }
+  const VisibilityTable& visibility() const { return visibility_; }
 
  private:
   Mesostructure mesostructure_;
-  std::vector<Direction> lights_;
+  LightSet lights_;
   TraceSettings settings_;
   PeriodicScene scene_;
+  std::vector<Facet> facets_;
+  VisibilityTable visibility_;
 };
 
 /// @throws Error  where a direction is more than 89.9 degrees from the normal; `role` is "light" or

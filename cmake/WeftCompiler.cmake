@@ -6,6 +6,10 @@ target_compile_options(weft_compiler INTERFACE -Wall -Wextra -Werror)
 target_compile_options(weft_compiler INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 # Contraction into fused multiply-adds is left on: results are the same for one build on one kind of CPU.
 target_compile_options(weft_compiler INTERFACE -march=${WEFT_ARCH})
+# Nothing reads errno after a square root, or traps on a NaN; both would keep loops from being vectorised.
+target_compile_options(weft_compiler INTERFACE -fno-math-errno -fno-trapping-math)
+# Vectors of sixteen floats stay within a program that is built in one go.
+target_compile_options(weft_compiler INTERFACE -Wno-psabi)
 if(WEFT_SANITIZE)
   # g++ 12 takes the undefined vectors of its own intrinsics for mistakes where checks are woven in.
   target_compile_options(weft_compiler INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized)

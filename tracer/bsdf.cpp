@@ -18,28 +18,36 @@ constexpr int table_size = 64;
 constexpr int table_samples = 2048;
 constexpr int fresnel_samples = 256;
 
-float fresnel_dielectric(float cosine, float ior) {
-  const float sine2 = (1 - cosine * cosine) / (ior * ior);
-  if (sine2 >= 1) return 1;
-  const float t = std::sqrt(1 - sine2);
-  const float s = (cosine - ior * t) / (cosine + ior * t);
-  const float p = (t - ior * cosine) / (t + ior * cosine);
-  return 0.5F * (s * s + p * p);
+// `Number`: a float, or sixteen side by side.
+template <typename Number>
+Number fresnel_dielectric(const Number& cosine, float ior) {
+  const Number sine2 = (1 - cosine * cosine) / (ior * ior);
+  const Number t = square_root(larger(1 - sine2, 0.0F));  // 0, all reflected, where sine2 >= 1
+  const Number s = (cosine - ior * t) / (cosine + ior * t);
+  const Number p = (t - ior * cosine) / (t + ior * cosine);
+  return select(t > 0, 0.5F * (s * s + p * p), t + 1);
 }
 
 // Exact, unpolarised, from vacuum onto eta + i k.
-float fresnel_conductor(float cosine, float eta, float k) {
-  const float c2 = cosine * cosine;
-  const float s2 = 1 - c2;
-  const float t0 = eta * eta - k * k - s2;
-  const float a2b2 = std::sqrt(t0 * t0 + 4 * eta * eta * k * k);
-  const float t1 = a2b2 + c2;
-  const float a = std::sqrt(std::max(0.0F, 0.5F * (a2b2 + t0)));
-  const float t2 = 2 * cosine * a;
-  const float s = (t1 - t2) / (t1 + t2);
-  const float t3 = c2 * a2b2 + s2 * s2;
-  const float t4 = t2 * s2;
+template <typename Number>
+Number fresnel_conductor(const Number& cosine, float eta, float k) {
+  const Number c2 = cosine * cosine;
+  const Number s2 = 1 - c2;
+  const Number t0 = eta * eta - k * k - s2;
+  const Number a2b2 = square_root(t0 * t0 + 4 * eta * eta * k * k);
+  const Number t1 = a2b2 + c2;
+  const Number a = square_root(larger(0.5F * (a2b2 + t0), 0.0F));
+  const Number t2 = 2 * cosine * a;
+  const Number s = (t1 - t2) / (t1 + t2);
+  const Number t3 = c2 * a2b2 + s2 * s2;
+  const Number t4 = t2 * s2;
   return 0.5F * (s + s * (t3 - t4) / (t3 + t4));
+}
+
+template <typename Number>
+Number schlick(const Number& cosine, float f0) {
+  const Number m = 1 - cosine;
+  return f0 + (1 - f0) * (m * m * m * m * m);
 }
 
 }  // namespace
@@ -54,6 +62,17 @@ struct Bsdf::AlbedoTable {
     const int i = std::min(static_cast<int>(position), table_size - 2);
     const float t = position - static_cast<float>(i);
     return albedo[i] * (1 - t) + albedo[i + 1] * t;
+  }
+  FloatLanes at(const FloatLanes& cosine) const {
+    const FloatLanes position = square_root(smaller(larger(cosine, 0.0F), 1.0F)) * (table_size - 1);
+    const IntLanes i =
+        __builtin_convertvector(smaller(position, table_size - 2), IntLanes);  // cuts off
+    const FloatLanes t = position - __builtin_convertvector(i, FloatLanes);
+    FloatLanes low;
+    FloatLanes high;
+    for (int k = 0; k < lanes; ++k) low[k] = albedo[i[k]];
+    for (int k = 0; k < lanes; ++k) high[k] = albedo[i[k] + 1];
+    return low * (1 - t) + high * t;
   }
 
   /// @param fresnel  reflectance of a facet at a cosine.
@@ -148,11 +167,17 @@ Bsdf Bsdf::plastic(const Rgb& albedo, float ior, float alpha) {
 
 Rgb Bsdf::fresnel(float cosine) const {
   if (kind_ == Kind::plastic) return Rgb(fresnel_dielectric(cosine, ior_));
-  if (schlick_) {
-    const float m = 1 - cosine;
-    const float m5 = m * m * m * m * m;
-    return f0_ + (Rgb(1, 1, 1) - f0_) * m5;
+  if (schlick_) return {schlick(cosine, f0_.x), schlick(cosine, f0_.y), schlick(cosine, f0_.z)};
+  return {fresnel_conductor(cosine, eta_.x, k_.x), fresnel_conductor(cosine, eta_.y, k_.y),
+          fresnel_conductor(cosine, eta_.z, k_.z)};
+}
+
+RgbLanes Bsdf::fresnel(const FloatLanes& cosine) const {
+  if (kind_ == Kind::plastic) {
+    const FloatLanes f = fresnel_dielectric(cosine, ior_);
+    return {f, f, f};
   }
+  if (schlick_) return {schlick(cosine, f0_.x), schlick(cosine, f0_.y), schlick(cosine, f0_.z)};
   return {fresnel_conductor(cosine, eta_.x, k_.x), fresnel_conductor(cosine, eta_.y, k_.y),
           fresnel_conductor(cosine, eta_.z, k_.z)};
 }
@@ -169,6 +194,37 @@ Rgb Bsdf::evaluate(const Direction& light, const Direction& view) const {
   const float lost = (1 - table_->at(light.z)) * (1 - table_->at(view.z)) * inverse_pi * light.z /
                      std::max(1 - table_->average, 1e-6F);
   return single + (kind_ == Kind::conductor ? multiple_scattering_ : albedo_) * lost;
+}
+
+Bsdf::ViewTerms Bsdf::view_terms(const Direction& view) const {
+  ViewTerms terms{.view = view, .lambda = 0, .lost = Rgb(0, 0, 0)};
+  if (kind_ == Kind::lambert || !(view.z > 0)) return terms;
+  terms.lambda = ggx::lambda(view, alpha_);
+  terms.lost = (kind_ == Kind::conductor ? multiple_scattering_ : albedo_) *
+               ((1 - table_->at(view.z)) * inverse_pi / std::max(1 - table_->average, 1e-6F));
+  return terms;
+}
+
+RgbLanes Bsdf::evaluate(const Vec3Lanes& lights, const ViewTerms& terms) const {
+  const FloatLanes zero{};
+  if (!(terms.view.z > 0)) return {zero, zero, zero};
+  const IntLanes above = lights.z > 0;
+  if (kind_ == Kind::lambert) {
+    const FloatLanes cosine = select(above, lights.z, zero) * inverse_pi;
+    return {cosine * albedo_.x, cosine * albedo_.y, cosine * albedo_.z};
+  }
+  Vec3Lanes half_vector{lights.x + terms.view.x, lights.y + terms.view.y, lights.z + terms.view.z};
+  const FloatLanes inverse_length = 1 / square_root(dot(half_vector, half_vector));
+  half_vector = {half_vector.x * inverse_length, half_vector.y * inverse_length,
+                 half_vector.z * inverse_length};
+  const FloatLanes specular =
+      ggx::density(half_vector, alpha_) /
+      ((1 + ggx::lambda(lights, alpha_) + terms.lambda) * (4 * terms.view.z));
+  const RgbLanes f = fresnel(smaller(dot(lights, half_vector), 1.0F));
+  const FloatLanes lost = (1 - table_->at(lights.z)) * lights.z;
+  return {select(above, f.r * specular + lost * terms.lost.x, zero),
+          select(above, f.g * specular + lost * terms.lost.y, zero),
+          select(above, f.b * specular + lost * terms.lost.z, zero)};
 }
 
 namespace {

@@ -11,6 +11,7 @@
 
 #include "btf/direction.h"
 #include "settings/settings.h"
+#include "tracer/lanes.h"
 
 namespace weft {
 
@@ -31,6 +32,16 @@ class Bsdf {
 
   /// f(light, view) * light.z in 1/sr; 0 unless light.z > 0 and view.z > 0.
   Rgb evaluate(const Direction& light, const Direction& view) const;
+
+  /// What depends on the view alone, for many lights.
+  struct ViewTerms {
+    Direction view;
+    float lambda = 0;  ///< of the view, see ggx::lambda
+    Rgb lost;          ///< of the lobe of multiple reflections: all but the light's factor
+  };
+  ViewTerms view_terms(const Direction& view) const;
+  /// `evaluate` for sixteen lights.
+  RgbLanes evaluate(const Vec3Lanes& lights, const ViewTerms& terms) const;
 
   struct Sample {
     Direction light;
@@ -58,6 +69,7 @@ class Bsdf {
   Rgb multiple_scattering_{0, 0, 0};
 
   Rgb fresnel(float cosine) const;
+  RgbLanes fresnel(const FloatLanes& cosine) const;
 };
 
 /// Reads `type = "lambert" | "conductor" | "plastic"` and its parameters (design page, "Text

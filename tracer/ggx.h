@@ -10,21 +10,24 @@
 #include <numbers>
 
 #include "btf/direction.h"
+#include "tracer/lanes.h"
 
 namespace weft::ggx {
 
-/// Density of normals per sr. sin^2 is taken from x and y, which keep their digits for a
-/// mirror-like alpha.
-inline float density(const Vec3& normal, float alpha) {
+/// Density of normals per sr; `Vector` is one or sixteen. sin^2 is taken from x and y, which keep
+/// their digits for a mirror-like alpha.
+template <typename Vector>
+inline auto density(const Vector& normal, float alpha) {
   const float a2 = alpha * alpha;
-  const float sine2 = normal.x * normal.x + normal.y * normal.y;
-  const float t = sine2 + a2 * normal.z * normal.z;
-  return t > 0 ? a2 / (std::numbers::pi_v<float> * t * t) : 0;
+  const auto sine2 = normal.x * normal.x + normal.y * normal.y;
+  const auto t = sine2 + a2 * normal.z * normal.z;
+  return select(t > 0, a2 / (std::numbers::pi_v<float> * t * t), t * 0);
 }
 
-inline float lambda(const Direction& d, float alpha) {
-  const float tangent2 = (d.x * d.x + d.y * d.y) / (d.z * d.z);
-  return 0.5F * (std::sqrt(1 + alpha * alpha * tangent2) - 1);
+template <typename Vector>
+inline auto lambda(const Vector& d, float alpha) {
+  const auto tangent2 = (d.x * d.x + d.y * d.y) / (d.z * d.z);
+  return 0.5F * (square_root(1 + alpha * alpha * tangent2) - 1);
 }
 
 /// Share of facets that `d` sees.

@@ -185,4 +185,36 @@ void RayScene::occluded(RayStream& rays, std::size_t count, Coherence coherence)
   rtcOccludedNp(device_->scene, &context, &query, static_cast<unsigned>(count));
 }
 
+static_assert(sizeof(RayPacket) == sizeof(RTCRay16) && sizeof(HitPacket) == sizeof(RTCRayHit16));
+
+namespace {
+
+void prepare(RayPacket& packet) {
+  packet.tnear = FloatLanes{};
+  packet.time = FloatLanes{};
+  packet.mask = ~WordLanes{};
+  packet.id = WordLanes{};
+  packet.flags = WordLanes{};
+}
+
+}  // namespace
+
+void RayScene::intersect(HitPacket& packet, std::uint16_t active, Coherence coherence) const {
+  RTCIntersectContext context = context_for(coherence);
+  prepare(packet.ray);
+  packet.mesh = ~WordLanes{};      // RTC_INVALID_GEOMETRY_ID
+  packet.instance = ~WordLanes{};  // the same
+  const IntLanes valid = lanes_of_bits(active);
+  rtcIntersect16(reinterpret_cast<const int*>(&valid), device_->scene, &context,
+                 reinterpret_cast<RTCRayHit16*>(&packet));
+}
+
+void RayScene::occluded(RayPacket& packet, std::uint16_t active, Coherence coherence) const {
+  RTCIntersectContext context = context_for(coherence);
+  prepare(packet);
+  const IntLanes valid = lanes_of_bits(active);
+  rtcOccluded16(reinterpret_cast<const int*>(&valid), device_->scene, &context,
+                reinterpret_cast<RTCRay16*>(&packet));
+}
+
 }  // namespace weft

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tracer/lanes.h"
 #include "tracer/triangle_mesh.h"
 
 namespace weft {
@@ -43,6 +44,29 @@ struct RayStream {
   }
 };
 
+/// Sixteen rays that are traced together.
+struct RayPacket {
+  FloatLanes ox, oy, oz, tnear, dx, dy, dz, time, tfar;
+  WordLanes mask, id, flags;
+
+  /// From the origin on without end.
+  void set(std::size_t i, const Vec3& origin, const Vec3& direction) {
+    ox[i] = origin.x;
+    oy[i] = origin.y;
+    oz[i] = origin.z;
+    dx[i] = direction.x;
+    dy[i] = direction.y;
+    dz[i] = direction.z;
+  }
+};
+
+/// And what they hit; `mesh` is RayHit::none for a miss, the distance is ray.tfar.
+struct HitPacket {
+  RayPacket ray;
+  FloatLanes ngx, ngy, ngz, u, v;
+  WordLanes primitive, mesh, instance;
+};
+
 /// Whether the rays of a stream, in order, run side by side (primary and shadow rays to one light)
 /// or not.
 enum class Coherence { coherent, incoherent };
@@ -65,6 +89,11 @@ class RayScene {
   void intersect(RayStream& rays, std::size_t count, Coherence coherence) const;
   /// An occluded ray has tfar[i] < 0 afterwards.
   void occluded(RayStream& rays, std::size_t count, Coherence coherence) const;
+
+  /// Those rays of a packet whose bit of `active` is set, from tnear = 0 to tfar. The others are
+  /// left alone.
+  void intersect(HitPacket& packet, std::uint16_t active, Coherence coherence) const;
+  void occluded(RayPacket& packet, std::uint16_t active, Coherence coherence) const;
 
  private:
   struct Device;

@@ -30,13 +30,16 @@ constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
   return reverse_bits(x);
 }
 
-/// Second dimension of Sobol's sequence (the first is `reverse_bits`).
+/// Second dimension of Sobol's sequence (the first is `reverse_bits`). With the index as a
+/// polynomial p(s) over bits, its bits reversed are p(1 + s): halves are folded at every power of
+/// two.
 constexpr std::uint32_t sobol_second(std::uint32_t index) {
-  std::uint32_t x = 0;
-  for (std::uint32_t v = 1U << 31; index != 0; index >>= 1, v ^= v >> 1) {
-    if ((index & 1U) != 0) x ^= v;
-  }
-  return x;
+  index ^= (index >> 1) & 0x55555555U;
+  index ^= (index >> 2) & 0x33333333U;
+  index ^= (index >> 4) & 0x0F0F0F0FU;
+  index ^= (index >> 8) & 0x00FF00FFU;
+  index ^= (index >> 16) & 0x0000FFFFU;
+  return reverse_bits(index);
 }
 
 /// Point `index` of the (0, 2)-sequence that `key` (a hash of all other coordinates) names; each in

@@ -39,35 +39,42 @@ TEST_CASE("level rays meet what a wide patch of copies has in their way") {
   constexpr int reach = 40;
   const RayScene patch(tiled(tile, reach));
   constexpr std::size_t n = 4000;
-  RayStream rays;
-  RayStream shadows;
-  rays.resize(n);
-  shadows.resize(n);
-  std::vector<RayHit> expected;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto u = [&](int k) { return unit_float(hash_coordinates(i, k, 9)); };
-    const Vec3 origin(u(0), u(1), u(2));
-    const Direction d = from_spherical(radians(85.0 + 10 * u(3)), 6.28 * u(4));
-    rays.set(i, origin, d, 0, 0);
-    shadows.set(i, origin, d, 0, 0);
-    expected.push_back(patch.intersect(origin, d, 0, 1e9F));
-  }
-  const std::int64_t traced_on = scene.intersect(rays, n, Coherence::incoherent);
-  CHECK(traced_on > 100);
-  scene.occluded(shadows, n, Coherence::incoherent);
+  std::int64_t traced_on = 0;
   int compared = 0;
   int different = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const bool hit = rays.mesh[i] != RayHit::none;
-    CHECK(hit == (shadows.tfar[i] < 0));
-    // The patch ends: only what is hit inside of it is known.
-    if (!expected[i].hit() || expected[i].distance > reach - 2) continue;
-    ++compared;
-    different += !hit || rays.primitive[i] != expected[i].primitive % tile.triangles.size() ||
-                         std::abs(rays.u[i] - expected[i].u) > 1e-2F
-                     ? 1
-                     : 0;
+  for (std::size_t first = 0; first < n; first += lanes) {
+    HitPacket rays{};
+    RayPacket shadows{};
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const auto u = [&](int dimension) {
+        return unit_float(hash_coordinates(first + k, dimension, 9));
+      };
+      const Vec3 origin(u(0), u(1), u(2));
+      const Direction d = from_spherical(radians(85.0 + 10 * u(3)), 6.28 * u(4));
+      rays.ray.set(k, origin, d);
+      shadows.set(k, origin, d);
+    }
+    const std::uint16_t active = 0x7FFF;  // the last one is left alone
+    traced_on += scene.intersect(rays, active, Coherence::incoherent);
+    scene.occluded(shadows, active, Coherence::incoherent);
+    CHECK(rays.mesh[lanes - 1] == RayHit::none);
+    for (std::size_t k = 0; k + 1 < lanes; ++k) {
+      const Vec3 origin(rays.ray.ox[k], rays.ray.oy[k], rays.ray.oz[k]);
+      const Direction d(rays.ray.dx[k], rays.ray.dy[k], rays.ray.dz[k]);
+      const bool hit = rays.mesh[k] != RayHit::none;
+      CHECK(hit == (shadows.tfar[k] < 0));
+      CHECK(hit == scene.intersect(origin, d).hit());
+      // The patch ends: only what is hit inside of it is known.
+      const RayHit expected = patch.intersect(origin, d, 0, 1e9F);
+      if (!expected.hit() || expected.distance > reach - 2) continue;
+      ++compared;
+      different += !hit || rays.primitive[k] != expected.primitive % tile.triangles.size() ||
+                           std::abs(rays.u[k] - expected.u) > 1e-2F
+                       ? 1
+                       : 0;
+    }
   }
+  CHECK(traced_on > 100);
   CHECK(compared > 1000);
   CHECK(different <= 2);  // grazing the rim of a triangle, where rounding decides
 }

@@ -123,3 +123,34 @@ TEST_CASE("nothing comes from or goes below the horizon") {
   CHECK(bsdf.evaluate({0, 0, 1}, {0, 0, -1}) == Rgb(0, 0, 0));
   CHECK(bsdf.sample({1, 0, 0}, {0.5F, 0.5F, 0.5F}).pdf == 0);
 }
+
+TEST_CASE("sixteen lights at once get what each gets alone") {
+  const std::vector<std::pair<const char*, Bsdf>> materials = {
+      {"lambert", Bsdf::lambert(Rgb(0.2F, 0.5F, 0.8F))},
+      {"gold", Bsdf::conductor(Rgb(0.14F, 0.37F, 1.44F), Rgb(3.98F, 2.38F, 1.6F), 0.2F)},
+      {"mirror", Bsdf::conductor_f0(Rgb(0.9F, 0.8F, 0.5F), 0.001F)},
+      {"plastic", Bsdf::plastic(Rgb(0.7F, 0.3F, 0.1F), 1.5F, 0.1F)}};
+  for (const auto& [name, bsdf] : materials) {
+    for (const float angle : {0.0F, 40.0F, 89.0F, 95.0F}) {
+      const Direction view = tilted(angle);
+      const Bsdf::ViewTerms terms = bsdf.view_terms(view);
+      Vec3Lanes lights{};
+      for (int k = 0; k < lanes; ++k) {
+        // Down to below the surface; the mirror direction is among them.
+        const Direction light = k == 3 ? Direction(-view.x, -view.y, view.z)
+                                       : from_spherical(radians(6.5 * k), 2.4 * k);
+        lights.x[k] = light.x;
+        lights.y[k] = light.y;
+        lights.z[k] = light.z;
+      }
+      const RgbLanes values = bsdf.evaluate(lights, terms);
+      for (int k = 0; k < lanes; ++k) {
+        const Rgb one = bsdf.evaluate({lights.x[k], lights.y[k], lights.z[k]}, view);
+        INFO(name << ", view " << angle << ", light " << k);
+        CHECK(values.r[k] == Approx(one.x).epsilon(1e-4).margin(1e-7));
+        CHECK(values.g[k] == Approx(one.y).epsilon(1e-4).margin(1e-7));
+        CHECK(values.b[k] == Approx(one.z).epsilon(1e-4).margin(1e-7));
+      }
+    }
+  }
+}

@@ -1,0 +1,62 @@
+// Connections of paths to lights that still have to be traced, light by light.
+//
+// Rays towards one light are parallel, so sixteen of them from places near each other travel as one
+// packet.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "acquisition/periodic_scene.h"
+#include "btf/direction.h"
+
+namespace weft {
+
+class ShadowQueue {
+ public:
+  /// What the visibility table says of it.
+  enum class Answer : std::uint32_t { unknown, visible, hidden };
+
+  struct Connection {
+    Vec3 origin;
+    std::uint32_t slot;  ///< where the value belongs
+    Answer answer;
+    float r, g, b;
+  };
+
+  explicit ShadowQueue(std::size_t lights) : connections_(lights) {}
+
+  void add(std::size_t light, const Connection& connection) {
+    connections_[light].push_back(connection);
+  }
+
+  /// Traces all, then forgets them.
+  /// @param arrive  called with (light, connection, visible) for each, in order of lights, then of
+  /// `add`.
+  /// @returns how many rays were traced on beyond the copies.
+  template <typename Arrive>
+  std::int64_t trace(const PeriodicScene& scene, std::span<const Direction> lights,
+                     Coherence coherence, const Arrive& arrive) {
+    std::int64_t traced_on = 0;
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+      std::vector<Connection>& queue = connections_[l];
+      for (std::size_t first = 0; first < queue.size(); first += lanes) {
+        const std::size_t count = std::min<std::size_t>(lanes, queue.size() - first);
+        RayPacket packet{};
+        for (std::size_t i = 0; i < count; ++i) packet.set(i, queue[first + i].origin, lights[l]);
+        traced_on +=
+            scene.occluded(packet, static_cast<std::uint16_t>((1U << count) - 1U), coherence);
+        for (std::size_t i = 0; i < count; ++i) arrive(l, queue[first + i], !(packet.tfar[i] < 0));
+      }
+      queue.clear();
+    }
+    return traced_on;
+  }
+
+ private:
+  std::vector<std::vector<Connection>> connections_;
+};
+
+}  // namespace weft

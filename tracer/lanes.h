@@ -1,0 +1,87 @@
+// Sixteen numbers side by side: what an AVX-512 register holds. The compiler splits them on lesser
+// CPUs.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "btf/vector.h"
+
+namespace weft {
+
+constexpr int lanes = 16;
+
+using FloatLanes = float __attribute__((vector_size(64)));
+/// Comparisons of `FloatLanes` give these: -1 where true, 0 where not.
+using IntLanes = std::int32_t __attribute__((vector_size(64)));
+using WordLanes = std::uint32_t __attribute__((vector_size(64)));
+
+struct Vec3Lanes {
+  FloatLanes x, y, z;
+};
+
+struct RgbLanes {
+  FloatLanes r, g, b;
+};
+
+inline FloatLanes all_lanes(float v) {
+  return FloatLanes{} + v;
+}
+
+// The formulas that are written once for a float and for lanes use these.
+
+inline float select(bool condition, float yes, float no) {
+  return condition ? yes : no;
+}
+inline FloatLanes select(const IntLanes& condition, const FloatLanes& yes, const FloatLanes& no) {
+  return condition ? yes : no;
+}
+
+inline float larger(float a, float b) {
+  return a > b ? a : b;
+}
+inline FloatLanes larger(const FloatLanes& a, float b) {
+  const FloatLanes all = all_lanes(b);
+  return a > all ? a : all;
+}
+inline float smaller(float a, float b) {
+  return a < b ? a : b;
+}
+inline FloatLanes smaller(const FloatLanes& a, float b) {
+  const FloatLanes all = all_lanes(b);
+  return a < all ? a : all;
+}
+inline FloatLanes smaller(const FloatLanes& a, const FloatLanes& b) {
+  return a < b ? a : b;
+}
+
+inline float square_root(float v) {
+  return std::sqrt(v);
+}
+inline FloatLanes square_root(const FloatLanes& v) {
+  FloatLanes root;
+  for (int i = 0; i < lanes; ++i) root[i] = std::sqrt(v[i]);
+  return root;
+}
+
+inline FloatLanes dot(const Vec3& a, const Vec3Lanes& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline FloatLanes dot(const Vec3Lanes& a, const Vec3Lanes& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// Lane i true where bit i is set.
+inline IntLanes lanes_of_bits(std::uint16_t bits) {
+  constexpr IntLanes bit{1,   2,   4,    8,    16,   32,   64,    128,
+                         256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  return ((IntLanes{} + bits) & bit) != 0;
+}
+/// Bit i set where lane i is true.
+inline std::uint16_t bits_of_lanes(const IntLanes& condition) {
+  unsigned bits = 0;
+  for (int i = 0; i < lanes; ++i) bits |= (static_cast<unsigned>(condition[i]) & 1U) << i;
+  return static_cast<std::uint16_t>(bits);
+}
+
+}  // namespace weft
