@@ -62,33 +62,60 @@ std::string provenance_of(const Mesostructure& mesostructure, const AcquisitionS
   return json.dump();
 }
 
-AcquisitionReport acquire(const Mesostructure& mesostructure, const AcquisitionSettings& settings,
-                          const std::filesystem::path& folder, Progress& progress) {
+AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
+                                const AcquisitionSettings& settings, const Shard& shard,
+                                const std::filesystem::path& folder, Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   const BtfHeader header = header_of(mesostructure, settings);
   check_elevations(header.views.directions(), "view");
   const ViewTracer tracer = tracer_for(mesostructure, settings, header);
   BtfWriter writer(folder, header);
-  std::vector<std::size_t> missing;
-  for (std::size_t v = 0; v < header.views.size(); ++v) {
-    if (!writer.has_view(v)) missing.push_back(v);
-  }
   AcquisitionReport report;
   report.lights = header.lights.size();
-  report.views_kept = header.views.size() - missing.size();
+  std::vector<std::size_t> missing;
+  for (std::size_t v = shard.index; v < header.views.size(); v += shard.count) {
+    if (writer.has_view(v)) {
+      ++report.views_kept;
+    } else {
+      missing.push_back(v);
+    }
+  }
   std::mutex mutex;
   progress.start(static_cast<std::int64_t>(missing.size()), "views", "rays");
   // Views side by side, so that one is written while another is traced.
   tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
     const std::size_t v = missing[i];
+    if (writer.has_view(v)) {  // another run has written it meanwhile
+      progress.advance(1);
+      const std::scoped_lock lock(mutex);
+      ++report.views_kept;
+      return;
+    }
     const TracedView view = tracer.trace(header.views[v], v);
     writer.write_view(v, view.values, view.standard_errors);
     progress.advance(1, view.statistics.rays());
     const std::scoped_lock lock(mutex);
     report.statistics += view.statistics;
   });
-  writer.finish();
   progress.finish();
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+std::vector<std::size_t> finish_acquisition(const Mesostructure& mesostructure,
+                                            const AcquisitionSettings& settings,
+                                            const std::filesystem::path& folder) {
+  const BtfHeader header = header_of(mesostructure, settings);
+  std::vector<std::size_t> missing = missing_views(folder, header);
+  if (missing.empty()) finish_btf(folder, header);
+  return missing;
+}
+
+AcquisitionReport acquire(const Mesostructure& mesostructure, const AcquisitionSettings& settings,
+                          const std::filesystem::path& folder, Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  AcquisitionReport report = acquire_shard(mesostructure, settings, Shard{}, folder, progress);
+  finish_btf(folder, header_of(mesostructure, settings));
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
 }

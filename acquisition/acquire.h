@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "acquisition/view_tracer.h"
 #include "btf/btf.h"
@@ -31,7 +32,25 @@ struct AcquisitionReport {
 AcquisitionReport acquire(const Mesostructure& mesostructure, const AcquisitionSettings& settings,
                           const std::filesystem::path& folder, Progress& progress);
 
-/// The same into memory.
+/// A part of a dataset's views: those whose number v has v % count == index.
+struct Shard {
+  std::size_t index = 0;
+  std::size_t count = 1;
+};
+
+/// Traces those of the shard's views that `folder` does not hold yet; the JSON is left to
+/// `finish_acquisition`. Shards may run at once in one folder, on several machines, and again.
+AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
+                                const AcquisitionSettings& settings, const Shard& shard,
+                                const std::filesystem::path& folder, Progress& progress);
+
+/// Finishes a dataset whose views shards have traced. Returns the views that are missing; where
+/// there are any, nothing is written. @throws Error where the folder holds another dataset.
+std::vector<std::size_t> finish_acquisition(const Mesostructure& mesostructure,
+                                            const AcquisitionSettings& settings,
+                                            const std::filesystem::path& folder);
+
+/// The whole dataset into memory.
 Btf acquire(const Mesostructure& mesostructure, const AcquisitionSettings& settings);
 
 /// What a dataset's provenance says: canonical JSON of the settings that decide its values.

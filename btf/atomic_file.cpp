@@ -6,6 +6,7 @@
 #include <xxhash.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -26,13 +27,39 @@ std::string reason(int code) {
   return std::generic_category().message(code);
 }
 
-// In the same folder, with the same extension: writers choose their format by it. The process's
-// number keeps two runs apart.
+// Where a process's number means this process: host and PID namespace, since machines and
+// containers may share a folder.
+std::string machine() {
+  std::string name(512, '\0');
+  if (gethostname(name.data(), 255) != 0) name[0] = '\0';
+  std::string identity = name.c_str();
+  const ssize_t length = readlink("/proc/self/ns/pid", name.data(), name.size());
+  if (length > 0) identity += name.substr(0, static_cast<std::size_t>(length));
+  return fmt::format("{:016x}", XXH3_64bits(identity.data(), identity.size())).substr(0, 8);
+}
+
+// In the same folder, with the same extension: writers choose their format by it. Machine and
+// process number keep two runs apart.
 fs::path aside(const fs::path& path) {
   fs::path name = path.stem();
-  name += fmt::format(".part{}", getpid());
+  name += fmt::format(".part{}-{}", machine(), getpid());
   name += path.extension();
   return path.parent_path() / ("." + name.string());
+}
+
+// Gives `temporary` its name unless that is taken. A hard link does so in one step, over NFS too; a
+// file system without them leaves a moment between asking and renaming.
+bool link_or_rename(const fs::path& temporary, const fs::path& path) {
+  if (link(temporary.c_str(), path.c_str()) == 0) {
+    fs::remove(temporary);
+    return true;
+  }
+  if (errno == EEXIST || fs::exists(path)) {
+    fs::remove(temporary);
+    return false;
+  }
+  fs::rename(temporary, path);
+  return true;
 }
 
 void sync(const fs::path& path, const fs::path& final_path) {
@@ -59,13 +86,17 @@ void sync_folder(const fs::path& folder) {
   }
 }
 
-void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+namespace {
+
+/// `publish` gives the temporary file its name.
+void write_aside(const fs::path& path, const std::function<void(const fs::path&)>& write,
+                 const std::function<void(const fs::path&)>& publish) {
   const fs::path temporary = aside(path);
   std::error_code ignored;
   try {
     write(temporary);
     sync(temporary, path);
-    fs::rename(temporary, path);
+    publish(temporary);
     sync_folder(path.parent_path());
   } catch (const fs::filesystem_error& error) {
     fs::remove(temporary, ignored);
@@ -76,25 +107,51 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   }
 }
 
-void write_text_atomically(const fs::path& path, std::string_view text) {
-  write_atomically(path, [&](const fs::path& temporary) {
+std::function<void(const fs::path&)> text_writer(const fs::path& path, std::string_view text) {
+  return [&path, text](const fs::path& temporary) {
     errno = 0;
     std::ofstream out(temporary, std::ios::binary);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     out.close();
     if (!out) throw failed(path.string(), "cannot be written: " + reason(errno));
-  });
+  };
+}
+
+bool is_old(const fs::path& path) {
+  std::error_code error;
+  const auto written = fs::last_write_time(path, error);
+  return !error && fs::file_time_type::clock::now() - written > std::chrono::hours(1);
+}
+
+}  // namespace
+
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+  write_aside(path, write, [&](const fs::path& temporary) { fs::rename(temporary, path); });
+}
+
+void write_text_atomically(const fs::path& path, std::string_view text) {
+  write_atomically(path, text_writer(path, text));
+}
+
+bool create_text_atomically(const fs::path& path, std::string_view text) {
+  bool created = false;
+  write_aside(path, text_writer(path, text),
+              [&](const fs::path& temporary) { created = link_or_rename(temporary, path); });
+  return created;
 }
 
 void remove_abandoned(const fs::path& folder) {
-  static const std::regex name(R"(\..*\.part([0-9]{1,9})(\..*)?)");
+  static const std::regex name(R"(\..*\.part([0-9a-f]{8})-([0-9]{1,9})(\..*)?)");
+  const std::string here = machine();
   std::vector<fs::path> abandoned;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string file = entry.path().filename().string();
     std::smatch match;
     if (!std::regex_match(file, match, name)) continue;
-    const bool alive = kill(std::stoi(match[1].str()), 0) == 0 || errno != ESRCH;
-    if (!alive) abandoned.push_back(entry.path());
+    const bool dead = match[1].str() == here
+                          ? kill(std::stoi(match[2].str()), 0) != 0 && errno == ESRCH
+                          : is_old(entry.path());
+    if (dead) abandoned.push_back(entry.path());
   }
   std::error_code ignored;
   for (const fs::path& path : abandoned) fs::remove(path, ignored);

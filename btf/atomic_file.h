@@ -21,8 +21,13 @@ void write_atomically(const std::filesystem::path& path,
 /// The same for a text.
 void write_text_atomically(const std::filesystem::path& path, std::string_view text);
 
-/// Removes what killed processes left beside files that they were writing in `folder`; what a
-/// living process of this machine writes stays.
+/// The same where there is no `path` yet; false, and nothing is changed, where there is one. Of
+/// several processes that try, on several machines too, one succeeds.
+bool create_text_atomically(const std::filesystem::path& path, std::string_view text);
+
+/// Removes what killed processes left beside files that they were writing in `folder`. What a
+/// living process of this machine writes stays, and so does what another machine has touched within
+/// the last hour.
 void remove_abandoned(const std::filesystem::path& folder);
 
 /// Whole contents. @throws Error bad_input, naming `path`, where it cannot be read.

@@ -19,6 +19,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr int file_version = 1;
+constexpr const char* unfinished = "unfinished.json";
 
 std::string pixel_type_name(PixelType type) {
   return type == PixelType::half ? "half" : "float";
@@ -42,6 +43,41 @@ void check_checksum(const fs::path& path, const Json& checksums) {
   }
 }
 
+Error other_settings(const fs::path& folder, const std::string& file, const std::string& found,
+                     const BtfHeader& header) {
+  const Json difference =
+      Json::diff(Json::parse(found, nullptr, false), Json::parse(header.provenance));
+  const std::string where =
+      difference.empty() ? "" : "; they differ in " + difference[0].value("path", "");
+  return bad_input(folder.string(), "holds views of other settings (" + file + where + ")",
+                   "choose another folder, or remove this one");
+}
+
+// Whether there is any view. Throws where one is of other settings.
+bool check_views(const fs::path& folder, const BtfHeader& header) {
+  bool any = false;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("view_") || entry.path().extension() != ".exr") continue;
+    const std::string found = read_view_header(entry.path()).provenance;
+    if (found != header.provenance) throw other_settings(folder, name, found, header);
+    any = true;
+  }
+  return any;
+}
+
+// Says whose the folder is while no view does, so that a run of other settings that begins at the
+// same time is refused before it works.
+void claim(const fs::path& folder, const BtfHeader& header) {
+  const Json json = {{"provenance", Json::parse(header.provenance)}};
+  const fs::path path = folder / unfinished;
+  if (create_text_atomically(path, json.dump(1) + "\n")) return;
+  const Json found = parse(path);
+  if (found != json) {
+    throw other_settings(folder, unfinished, found.value("provenance", Json()).dump(), header);
+  }
+}
+
 }  // namespace
 
 std::string view_file_name(std::size_t view) {
@@ -54,14 +90,7 @@ BtfWriter::BtfWriter(fs::path folder, BtfHeader header)
   fs::create_directories(folder_, error);
   if (error) throw failed(folder_.string(), "cannot be created: " + error.message());
   remove_abandoned(folder_);
-  for (const auto& entry : fs::directory_iterator(folder_)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with("view_") || entry.path().extension() != ".exr") continue;
-    if (read_view_header(entry.path()).provenance != header_.provenance) {
-      throw bad_input(folder_.string(), "holds views of other settings (" + name + ")",
-                      "choose another folder, or remove this one");
-    }
-  }
+  if (!check_views(folder_, header_)) claim(folder_, header_);
 }
 
 fs::path BtfWriter::view_path(std::size_t view) const {
@@ -80,29 +109,44 @@ void BtfWriter::write_view(std::size_t view, std::span<const float> values,
                   standard_errors);
 }
 
-void BtfWriter::finish() {
+std::vector<std::size_t> missing_views(const fs::path& folder, const BtfHeader& header) {
+  if (fs::is_directory(folder)) check_views(folder, header);
+  std::vector<std::size_t> missing;
+  for (std::size_t v = 0; v < header.views.size(); ++v) {
+    if (!fs::exists(folder / view_file_name(v))) missing.push_back(v);
+  }
+  return missing;
+}
+
+void finish_btf(const fs::path& folder, const BtfHeader& header) {
+  const std::vector<std::size_t> missing = missing_views(folder, header);
+  if (!missing.empty()) {
+    throw bad_input(folder.string(), "has no " + view_file_name(missing.front()) + " yet");
+  }
   Json files = Json::object();
   Json noise = Json::array();
-  for (std::size_t v = 0; v < header_.views.size(); ++v) {
-    if (!has_view(v)) throw bad_input(folder_.string(), "has no " + view_file_name(v) + " yet");
-    const std::vector<float> errors = read_standard_errors(view_path(v));
+  for (std::size_t v = 0; v < header.views.size(); ++v) {
+    const fs::path path = folder / view_file_name(v);
+    const std::vector<float> errors = read_standard_errors(path);
     if (!errors.empty()) noise.push_back(errors);
-    files[view_file_name(v)] = file_checksum(view_path(v));
+    files[view_file_name(v)] = file_checksum(path);
   }
   Json json = {{"format", "weft-btf"},
                {"version", file_version},
-               {"quantity", header_.quantity},
-               {"texels", {header_.width, header_.height}},
-               {"pixel", pixel_type_name(header_.pixel_type)},
-               {"tile_size", header_.tile_size},
-               {"views", sampling_to_json(header_.views)},
-               {"lights", sampling_to_json(header_.lights)},
-               {"provenance", Json::parse(header_.provenance)}};
-  if (noise.size() == header_.views.size()) {
+               {"quantity", header.quantity},
+               {"texels", {header.width, header.height}},
+               {"pixel", pixel_type_name(header.pixel_type)},
+               {"tile_size", header.tile_size},
+               {"views", sampling_to_json(header.views)},
+               {"lights", sampling_to_json(header.lights)},
+               {"provenance", Json::parse(header.provenance)}};
+  if (noise.size() == header.views.size()) {
     json["noise"] = {{"standard_error_of_pair_means", noise}};
   }
   json["xxh3_128"] = files;
-  write_text_atomically(folder_ / "btf.json", json.dump(1) + "\n");
+  write_text_atomically(folder / "btf.json", json.dump(1) + "\n");
+  remove_abandoned(folder);
+  fs::remove(folder / unfinished);
 }
 
 BtfHeader read_btf_header(const fs::path& folder) {

@@ -24,10 +24,22 @@ struct BtfHeader {
   std::vector<float> standard_errors;
 };
 
+/// Views of which `folder` has no file yet, ascending; all where there is no such folder.
+/// @throws Error  where it holds views of other settings.
+std::vector<std::size_t> missing_views(const std::filesystem::path& folder,
+                                       const BtfHeader& header);
+
+/// Checksums every view's file and writes `btf.json`. What a view's own writer knew (its standard
+/// errors) is read from its file, so that it does not matter who wrote which view.
+/// @throws Error  bad_input where a view is missing, or of other settings.
+void finish_btf(const std::filesystem::path& folder, const BtfHeader& header);
+
 /// Writes a dataset view by view; each file appears whole or not at all, and the JSON comes last.
+/// Several writers of one dataset may work in one folder at once, on several machines too.
 class BtfWriter {
  public:
-  /// Creates the folder. Views that are there already, whole and of the same settings, are kept
+  /// Creates the folder, and `unfinished.json` in it, which names the settings before the first
+  /// view does. Views that are there already, whole and of the same settings, are kept
   /// (`has_view`), so that an interrupted run continues.
   /// @throws Error  where the folder holds another dataset, or cannot be written.
   BtfWriter(std::filesystem::path folder, BtfHeader header);
@@ -43,8 +55,8 @@ class BtfWriter {
   void write_view(std::size_t view, std::span<const float> values,
                   std::span<const float> standard_errors = {});
 
-  /// Checksums every file and writes `btf.json`. @throws Error where a view is missing.
-  void finish();
+  /// `finish_btf` of this dataset.
+  void finish() const { finish_btf(folder_, header_); }
 
  private:
   std::filesystem::path view_path(std::size_t view) const;

@@ -1,19 +1,18 @@
 // weft acquire: traces a mesostructure's BTF into a dataset.
 #include <fmt/core.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "acquisition/acquire.h"
-#include "btf/atomic_file.h"
+#include "btf/btf_file.h"
 #include "btf/error.h"
 #include "cli/command.h"
+#include "cli/run_record.h"
 
 namespace weft::cli {
 
@@ -30,6 +29,8 @@ struct Options {
   std::string max_bounces = "8";
   std::string pixel = "half";
   std::vector<std::string> set;
+  std::string shard;
+  bool finish = false;
 };
 
 int whole_number(const std::string& option, const std::string& text, int least, int most) {
@@ -64,22 +65,18 @@ AcquisitionSettings settings_of(const Options& options, const Session& session) 
   return settings;
 }
 
-std::string host_name() {
-  std::string name(256, '\0');
-  if (gethostname(name.data(), name.size() - 1) != 0) return "unknown";
-  return name.c_str();
-}
-
-// What tells how this run went, not what the data are: outside the checksums.
-void write_run(const std::filesystem::path& folder, const Session& session) {
-  nlohmann::ordered_json run = {
-      {"command", session.command_line},
-      {"host", host_name()},
-      {"threads", session.threads > 0 ? session.threads
-                                      : static_cast<int>(std::thread::hardware_concurrency())},
-      {"finished_unix", static_cast<std::int64_t>(std::time(nullptr))},
-      {"measured", session.measured}};
-  write_text_atomically(folder / "run.json", run.dump(1) + "\n");
+Shard shard_of(const std::string& text) {
+  constexpr int most_shards = 1'000'000;
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) {
+    throw bad_input("--shard", fmt::format("is \"{}\"; expected I/N, e.g. 0/8, the first of eight "
+                                           "shards, to 7/8, the last",
+                                           text));
+  }
+  const int count = whole_number("--shard, N of I/N", text.substr(slash + 1), 1, most_shards);
+  const int index =
+      whole_number("--shard, I of I/N, counted from 0", text.substr(0, slash), 0, count - 1);
+  return {static_cast<std::size_t>(index), static_cast<std::size_t>(count)};
 }
 
 void report(const AcquisitionReport& result, const Options& options, Session& session) {
@@ -123,13 +120,49 @@ void report(const AcquisitionReport& result, const Options& options, Session& se
   }
 }
 
+std::string names_of(const std::vector<std::size_t>& views) {
+  constexpr std::size_t most = 8;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(views.size(), most); ++i) {
+    names += (i > 0 ? ", " : "") + view_file_name(views[i]);
+  }
+  if (views.size() > most) names += fmt::format(" and {} more", views.size() - most);
+  return names;
+}
+
+void finish(const Mesostructure& mesostructure, const AcquisitionSettings& settings,
+            const std::string& output, Session& session) {
+  const auto missing = finish_acquisition(mesostructure, settings, output);
+  session.measured = {{"output", output}, {"missing_views", missing}};
+  if (missing.empty()) {
+    session.say(fmt::format("{}: finished", output));
+    append_run(std::filesystem::path(output) / "run.json", session);
+    return;
+  }
+  // Told here and not thrown, so that --json still says which.
+  fmt::print(stderr,
+             "weft: {}: has no {} yet (trace them first, with the same settings; view v is in "
+             "--shard I/N with I = v % N)\n",
+             output, names_of(missing));
+  session.exit_code = failure;
+}
+
 void run(const Options& options, Session& session) {
   const AcquisitionSettings settings = settings_of(options, session);
+  const bool whole = options.shard.empty();
+  const Shard shard = whole ? Shard{} : shard_of(options.shard);
   const Mesostructure mesostructure = read_mesostructure(options.mesostructure, options.set);
+  if (options.finish) {
+    finish(mesostructure, settings, options.output, session);
+    return;
+  }
   Progress progress("acquire", session.quiet || session.json);
-  const AcquisitionReport result = acquire(mesostructure, settings, options.output, progress);
-  report(result, options, session);
-  write_run(options.output, session);
+  report(whole ? acquire(mesostructure, settings, options.output, progress)
+               : acquire_shard(mesostructure, settings, shard, options.output, progress),
+         options, session);
+  const std::string record =
+      whole ? "run.json" : fmt::format("run_{}of{}.json", shard.index, shard.count);
+  append_run(std::filesystem::path(options.output) / record, session);
 }
 
 }  // namespace
@@ -163,6 +196,15 @@ void add_acquire(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"half", "float"}));
   command->add_option("--set", options->set,
                       "KEY=VALUE overrides a key of the mesostructure, by its dotted path");
+  CLI::Option* shard = command->add_option(
+      "--shard", options->shard,
+      "I/N, 0 <= I < N: only the views v with v % N = I, and no btf.json; any number of shards may "
+      "run at once, on several machines, or again");
+  command
+      ->add_flag("--finish", options->finish,
+                 "Trace nothing: write btf.json once all shards' views are there; exit 1 naming "
+                 "those that are not")
+      ->excludes(shard);
   command->callback([options, &session] { run(*options, session); });
 }
 

@@ -26,6 +26,19 @@ void run(const std::filesystem::path& folder, const AcquisitionSettings& setting
   acquire(test::checker(16), settings, folder, silent);
 }
 
+void expect_same_files(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(a)) {
+    const auto other = b / entry.path().filename();
+    INFO(other);
+    REQUIRE(std::filesystem::exists(other));
+    CHECK(file_checksum(entry.path()) == file_checksum(other));
+    ++files;
+  }
+  CHECK(files ==
+        static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(b), {})));
+}
+
 }  // namespace
 
 TEST_CASE("a continued acquisition has the bytes of one in one go") {
@@ -39,19 +52,44 @@ TEST_CASE("a continued acquisition has the bytes of one in one go") {
   const AcquisitionReport report =
       acquire(test::checker(16), small(), folder.path / "b.btf", silent);
   CHECK(report.views_kept == 4);
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path / "a.btf")) {
-    CHECK(file_checksum(entry.path()) ==
-          file_checksum(folder.path / "b.btf" / entry.path().filename()));
-  }
+  expect_same_files(folder.path / "a.btf", folder.path / "b.btf");
 }
 
-TEST_CASE("what a killed run left half written is gone after the next") {
+TEST_CASE("shards in any order, and twice, have the bytes of one run in one go") {
   const TemporaryFolder folder;
   run(folder.path / "a.btf", small());
-  // The number of a process that cannot be: above Linux's largest.
-  std::ofstream(folder.path / "a.btf/.view_002.part99999999.exr") << "half";
+  const auto shards = folder.path / "b.btf";
+  Progress silent;
+  std::size_t kept = 0;
+  for (const std::size_t index : {2, 0, 2, 3}) {
+    kept += acquire_shard(test::checker(16), small(), {index, 4}, shards, silent).views_kept;
+    CHECK_FALSE(std::filesystem::exists(shards / "btf.json"));
+  }
+  CHECK(kept == 1);  // shard 2's only view, the second time
+  CHECK(finish_acquisition(test::checker(16), small(), shards) == std::vector<std::size_t>{1, 5});
+  CHECK_FALSE(std::filesystem::exists(shards / "btf.json"));
+  AcquisitionSettings other = small();
+  other.trace.seed = 4;
+  CHECK_THROWS_WITH(acquire_shard(test::checker(16), other, {1, 4}, shards, silent),
+                    Catch::Contains("other settings"));
+  CHECK_THROWS_WITH(finish_acquisition(test::checker(16), other, shards),
+                    Catch::Contains("other settings"));
+  acquire_shard(test::checker(16), small(), {1, 4}, shards, silent);
+  CHECK(finish_acquisition(test::checker(16), small(), shards).empty());
+  CHECK_THAT(read_text(shards / "btf.json"), Catch::Contains("standard_error_of_pair_means"));
+  expect_same_files(folder.path / "a.btf", shards);
+}
+
+TEST_CASE("a plain run continues what shards began, and a shard of none has nothing to do") {
+  const TemporaryFolder folder;
   run(folder.path / "a.btf", small());
-  CHECK_FALSE(std::filesystem::exists(folder.path / "a.btf/.view_002.part99999999.exr"));
+  Progress silent;
+  const auto shards = folder.path / "b.btf";
+  acquire_shard(test::checker(16), small(), {1, 2}, shards, silent);
+  CHECK(acquire(test::checker(16), small(), shards, silent).views_kept == 3);
+  expect_same_files(folder.path / "a.btf", shards);
+  CHECK(acquire_shard(test::checker(16), small(), {8, 9}, shards, silent).statistics.paths == 0);
+  expect_same_files(folder.path / "a.btf", shards);
 }
 
 TEST_CASE("views of other settings are not kept") {

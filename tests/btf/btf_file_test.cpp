@@ -1,6 +1,7 @@
 // Datasets on disk: round trips, resumption, and what is refused.
 #include "btf/btf_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -38,6 +39,15 @@ BtfHeader header_of(const Btf& btf) {
           .tile_size = 1,
           .provenance = btf.provenance,
           .standard_errors = {}};
+}
+
+std::vector<std::string> names_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 }  // namespace
@@ -95,6 +105,37 @@ TEST_CASE("a writer continues where another stopped, and keeps the noise") {
   CHECK_THROWS_WITH(BtfWriter(folder.path / "a.btf", other), Catch::Contains("other settings"));
 }
 
+TEST_CASE("a folder is refused to other settings before the first view is there") {
+  const TemporaryFolder folder;
+  const Btf btf = random_btf(PixelType::half);
+  const std::vector<float> values(3 * 6 * 8, 0.25F);
+  BtfHeader other = header_of(btf);
+  other.provenance = R"({"type":"test","spp":2})";
+  BtfWriter first(folder.path / "a.btf", header_of(btf));
+  CHECK_THROWS_WITH(BtfWriter(folder.path / "a.btf", other),
+                    Catch::Contains("other settings") && Catch::Contains("unfinished.json") &&
+                        Catch::Contains("/spp"));
+  BtfWriter second(folder.path / "a.btf", header_of(btf));
+  for (std::size_t v = 0; v < 5; ++v) (v % 2 == 0 ? first : second).write_view(v, values);
+  CHECK_THROWS_WITH(missing_views(folder.path / "a.btf", other), Catch::Contains("other settings"));
+  CHECK_THROWS_WITH(finish_btf(folder.path / "a.btf", other), Catch::Contains("other settings"));
+  CHECK(names_in(folder.path / "a.btf").back() == "view_004.exr");
+  second.finish();
+  CHECK(names_in(folder.path / "a.btf") ==
+        std::vector<std::string>{"btf.json", "view_000.exr", "view_001.exr", "view_002.exr",
+                                 "view_003.exr", "view_004.exr"});
+}
+
+TEST_CASE("finishing names what is missing and makes nothing") {
+  const TemporaryFolder folder;
+  const BtfHeader header = header_of(random_btf(PixelType::half));
+  CHECK(missing_views(folder.path / "a.btf", header).size() == 5);
+  CHECK_THROWS_WITH(finish_btf(folder.path / "a.btf", header), Catch::Contains("view_000.exr"));
+  CHECK(std::filesystem::is_empty(folder.path));
+  BtfWriter(folder.path / "a.btf", header).write_view(3, std::vector<float>(3 * 6 * 8, 0.25F));
+  CHECK(missing_views(folder.path / "a.btf", header) == std::vector<std::size_t>{0, 1, 2, 4});
+}
+
 TEST_CASE("values that may not be stored are refused with their place") {
   const TemporaryFolder folder;
   BtfWriter writer(folder.path / "a.btf", header_of(random_btf(PixelType::half)));
@@ -108,7 +149,7 @@ TEST_CASE("values that may not be stored are refused with their place") {
   values[3 * (2 * 6 + 4) + 1] = -1;
   CHECK_THROWS_AS(writer.write_view(1, values), Error);
   CHECK_FALSE(writer.has_view(1));
-  CHECK(std::filesystem::is_empty(folder.path / "a.btf"));
+  CHECK(names_in(folder.path / "a.btf") == std::vector<std::string>{"unfinished.json"});
 }
 
 TEST_CASE("a view in memory comes back, and takes only what can be stored") {
@@ -160,7 +201,7 @@ TEST_CASE("a view whose window does not start at (0, 0) is refused") {
 TEST_CASE("a view that cannot be written is named, not its temporary file") {
   const TemporaryFolder folder;
   BtfWriter writer(folder.path / "a.btf", header_of(random_btf(PixelType::half)));
-  std::filesystem::remove(folder.path / "a.btf");
+  std::filesystem::remove_all(folder.path / "a.btf");
   try {
     writer.write_view(2, std::vector<float>(3 * 6 * 8, 1.0F));
     FAIL("written to a folder that is not there");

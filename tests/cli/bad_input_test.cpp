@@ -98,6 +98,23 @@ TEST_CASE("acquire refuses bad options") {
   mistakes.refused(acquire("good.toml", {"--set", "hight=1"}), {"hight", "height"});
 }
 
+TEST_CASE("acquire refuses shards that are none") {
+  const Mistakes mistakes;
+  const auto refused = [&](const std::string& shard, const std::vector<std::string>& fragments) {
+    mistakes.refused(acquire("good.toml", {"--shard", shard}), fragments);
+  };
+  refused("3", {"--shard", "\"3\"", "I/N", "0/8"});
+  refused("3/3", {"--shard", "from 0", "\"3\"", "0 to 2"});
+  refused("-1/3", {"--shard", "\"-1\"", "0 to 2"});
+  refused("0/0", {"--shard", "N of I/N", "\"0\"", "from 1"});
+  refused("1/2/3", {"--shard", "\"2/3\""});
+  refused("one/2", {"--shard", "\"one\""});
+  refused("/2", {"--shard", "I of I/N"});
+  refused("1/", {"--shard", "N of I/N"});
+  refused("1/99999999999", {"--shard", "N of I/N"});
+  mistakes.refused(acquire("good.toml", {"--shard", "0/2", "--finish"}), {"--shard", "--finish"});
+}
+
 TEST_CASE("compress, info and extract refuse what is not a dataset") {
   const Mistakes mistakes;
   mistakes.refused({"info", "nothing.btf"}, {"nothing.btf"});
