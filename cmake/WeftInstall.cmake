@@ -1,4 +1,4 @@
-# cmake --install: bin/weft, the headers, share/weft/scenes, and a package for find_package(weft).
+# cmake --install: bin/weft, the headers, share/weft/scenes, share/weft/slurm, and a package for find_package(weft).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -13,6 +13,7 @@ endforeach()
 if(EXISTS ${PROJECT_SOURCE_DIR}/scenes)
   install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)
 endif()
+install(PROGRAMS acquisition/slurm/acquire.sbatch DESTINATION ${CMAKE_INSTALL_DATADIR}/weft/slurm)
 
 install(EXPORT weftTargets NAMESPACE weft:: DESTINATION ${package_folder})
 configure_package_config_file(cmake/weftConfig.cmake.in ${PROJECT_BINARY_DIR}/weftConfig.cmake

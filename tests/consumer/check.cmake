@@ -12,7 +12,7 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-foreach(file bin/weft include/weft/btf/btf.h share/weft/scenes)
+foreach(file bin/weft include/weft/btf/btf.h share/weft/scenes share/weft/slurm/acquire.sbatch)
   if(NOT EXISTS ${WORK}/prefix/${file})
     message(FATAL_ERROR "the installation lacks ${file}")
   endif()
