@@ -12,6 +12,7 @@ std::span<const MesostructureType> mesostructure_types() {
       weave_type(),        //
       corduroy_type(),     //
       leather_type(),      //
+      gravel_type(),       //
       heightfield_type(),  //
       mesh_type(),         //
   };

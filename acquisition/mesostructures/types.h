@@ -11,6 +11,7 @@ MesostructureType tissue_type();
 MesostructureType weave_type();
 MesostructureType corduroy_type();
 MesostructureType leather_type();
+MesostructureType gravel_type();
 MesostructureType heightfield_type();
 MesostructureType mesh_type();
 
