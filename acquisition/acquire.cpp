@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <chrono>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -68,18 +69,16 @@ AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
   const auto begin = std::chrono::steady_clock::now();
   const BtfHeader header = header_of(mesostructure, settings);
   check_elevations(header.views.directions(), "view");
-  const ViewTracer tracer = tracer_for(mesostructure, settings, header);
-  BtfWriter writer(folder, header);
   AcquisitionReport report;
   report.lights = header.lights.size();
-  std::vector<std::size_t> missing;
-  for (std::size_t v = shard.index; v < header.views.size(); v += shard.count) {
-    if (writer.has_view(v)) {
-      ++report.views_kept;
-    } else {
-      missing.push_back(v);
-    }
-  }
+  std::vector<std::size_t> missing = missing_views(folder, header);
+  std::erase_if(missing, [&](std::size_t v) { return v % shard.count != shard.index; });
+  for (std::size_t v = shard.index; v < header.views.size(); v += shard.count) ++report.views_kept;
+  report.views_kept -= missing.size();
+  // What is refused is refused before the folder is made, and a tracer costs more than a look.
+  std::unique_ptr<const ViewTracer> tracer;
+  if (!missing.empty()) tracer.reset(new ViewTracer(tracer_for(mesostructure, settings, header)));
+  BtfWriter writer(folder, header);
   std::mutex mutex;
   progress.start(static_cast<std::int64_t>(missing.size()), "views", "rays");
   // Views side by side, so that one is written while another is traced.
@@ -91,7 +90,7 @@ AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
       ++report.views_kept;
       return;
     }
-    const TracedView view = tracer.trace(header.views[v], v);
+    const TracedView view = tracer->trace(header.views[v], v);
     writer.write_view(v, view.values, view.standard_errors);
     progress.advance(1, view.statistics.rays());
     const std::scoped_lock lock(mutex);
