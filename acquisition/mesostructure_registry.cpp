@@ -13,6 +13,7 @@ std::span<const MesostructureType> mesostructure_types() {
       corduroy_type(),     //
       leather_type(),      //
       gravel_type(),       //
+      brick_type(),        //
       heightfield_type(),  //
       mesh_type(),         //
   };

@@ -12,6 +12,7 @@ MesostructureType weave_type();
 MesostructureType corduroy_type();
 MesostructureType leather_type();
 MesostructureType gravel_type();
+MesostructureType brick_type();
 MesostructureType heightfield_type();
 MesostructureType mesh_type();
 
