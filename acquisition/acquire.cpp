@@ -1,15 +1,22 @@
 #include "acquisition/acquire.h"
 
 #include <fmt/core.h>
-#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <bit>
 #include <chrono>
+#include <cmath>
+#include <fstream>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "acquisition/path_block.h"
 #include "btf/btf_file.h"
+#include "btf/error.h"
 #include "btf/random.h"
 
 namespace weft {
@@ -60,8 +67,57 @@ std::string provenance_of(const Mesostructure& mesostructure, const AcquisitionS
     json["max_bounces"] = "unlimited";
   else
     json["max_bounces"] = settings.trace.max_bounces;
+  if (settings.trace.error > 0) json["error"] = settings.trace.error;
+  if (settings.trace.texel_errors) json["texel_errors"] = true;
+  if (settings.trace.cut_height) json["cut_height"] = *settings.trace.cut_height;
   return json.dump();
 }
+
+namespace {
+
+// What the process holds in memory now, from Linux' /proc; 0 where that cannot be read.
+std::size_t resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t pages = 0;
+  std::size_t resident = 0;
+  statm >> pages >> resident;
+  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+// How many views fit into the memory that is left once the structure is there.
+std::size_t views_at_once(const AcquisitionSettings& settings, std::size_t lights) {
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  if (settings.memory == 0) return threads;
+  const TraceSettings& trace = settings.trace;
+  const std::size_t values = 3 * lights * static_cast<std::size_t>(trace.width) * trace.height;
+  const std::size_t view = values * sizeof(float) * (trace.texel_errors ? 2 : 1);
+  const std::size_t taken = resident_bytes() + threads * PathBlock::bytes_for(lights);
+  if (taken + view > settings.memory) {
+    constexpr double mebibyte = 1 << 20;
+    throw bad_input(
+        "--memory",
+        fmt::format("is {:.0f} MiB; expected at least {:.0f} MiB: the structure and one "
+                    "view's values",
+                    static_cast<double>(settings.memory) / mebibyte,
+                    std::ceil(static_cast<double>(taken + view) / mebibyte)));
+  }
+  return std::min(threads, (settings.memory - taken) / view);
+}
+
+// Runs `body` on [0, count), at most `at_once` of them at a time.
+void for_each_limited(std::size_t count, std::size_t at_once,
+                      const std::function<void(std::size_t)>& body) {
+  std::size_t next = 0;
+  const auto give = [&](tbb::flow_control& control) {
+    if (next == count) control.stop();
+    return next++;
+  };
+  tbb::parallel_pipeline(
+      at_once, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, give) &
+                   tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, body));
+}
+
+}  // namespace
 
 AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
                                 const AcquisitionSettings& settings, const Shard& shard,
@@ -82,7 +138,8 @@ AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
   std::mutex mutex;
   progress.start(static_cast<std::int64_t>(missing.size()), "views", "rays");
   // Views side by side, so that one is written while another is traced.
-  tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+  const std::size_t at_once = views_at_once(settings, header.lights.size());
+  for_each_limited(missing.size(), at_once, [&](std::size_t i) {
     const std::size_t v = missing[i];
     if (writer.has_view(v)) {  // another run has written it meanwhile
       progress.advance(1);
@@ -91,7 +148,10 @@ AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
       return;
     }
     const TracedView view = tracer->trace(header.views[v], v);
-    writer.write_view(v, view.values, view.standard_errors);
+    writer.write_view(v, {.values = view.values,
+                          .standard_errors = view.standard_errors,
+                          .texel_errors = view.texel_errors,
+                          .coverage = view.coverage});
     progress.advance(1, view.statistics.rays());
     const std::scoped_lock lock(mutex);
     report.statistics += view.statistics;

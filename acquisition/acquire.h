@@ -16,6 +16,9 @@ struct AcquisitionSettings {
   std::string views = "ubo81";  ///< a name that `named_directions` knows
   std::string lights = "ubo81";
   PixelType pixel_type = PixelType::half;
+  /// Bytes that the process may hold; fewer views are traced at once where they would not fit. 0:
+  /// as many as there are threads.
+  std::size_t memory = 0;
 };
 
 struct AcquisitionReport {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "tracer/sobol.h"
 
@@ -16,7 +17,8 @@ constexpr int most_bounces = 4096;
 constexpr float dim_throughput = 0.02F;
 // One certain answer in so many is checked.
 constexpr std::uint32_t check_every = 256;
-constexpr std::uint32_t most_samples = 64;  // of each texel in a wave
+constexpr std::uint32_t most_samples = 64;     // of each texel in a wave
+constexpr std::uint32_t samples_a_check = 16;  // of each texel in a wave, where it may be the last
 // Pairs of random numbers of a path: where in the texel, then three a bounce.
 constexpr std::uint64_t texel_pair = 0;
 constexpr std::uint64_t direction_pair(int bounce) {
@@ -36,8 +38,16 @@ int PathBlock::edge_for(std::size_t lights) {
   return lights <= 768 ? 4 : 2;
 }
 
-PathBlock::PathBlock(const ViewTracer& tracer)
+std::size_t PathBlock::bytes_for(std::size_t lights) {
+  const auto edge = static_cast<std::size_t>(edge_for(lights));
+  const std::size_t values = edge * edge * ((lights + lanes - 1) / lanes) * lanes;
+  // Per value: a wave's sums and the double ones in three channels, and the grey ones.
+  return values * (3 * (most_groups * sizeof(float) + 2 * sizeof(double)) + sizeof(double));
+}
+
+PathBlock::PathBlock(const ViewTracer& tracer, PacketLog* log)
     : tracer_(tracer),
+      log_(log),
       groups_(tracer.lights().groups()),
       first_connections_(tracer.lights().size()),
       later_connections_(tracer.lights().size()) {
@@ -50,7 +60,8 @@ PathBlock::PathBlock(const ViewTracer& tracer)
   keys_.resize(edge * edge);
 }
 
-void PathBlock::trace(const Direction& view, std::uint64_t view_key, int left, int top) {
+void PathBlock::trace(const Direction& view, std::uint64_t view_key, int samples,
+                      std::span<const double> error_scales, int left, int top) {
   const TraceSettings& s = tracer_.settings();
   const int edge = edge_for(tracer_.lights().size());
   std::fill(sums_.begin(), sums_.end(), 0.0);
@@ -69,16 +80,24 @@ void PathBlock::trace(const Direction& view, std::uint64_t view_key, int left, i
       keys_[static_cast<std::size_t>(y) * columns_ + x] = hash_coordinates(s.seed, view_key, texel);
     }
   }
-  samples_ = s.spp;
-  sample_groups_ = 0;
-  const auto spp = static_cast<std::uint32_t>(s.spp);
-  group_size_ = std::clamp(spp / most_groups, 1U, most_samples / most_groups);
+  const auto texels = static_cast<std::size_t>(columns_) * rows_;
+  statistics_.texels = static_cast<std::int64_t>(texels);
+  active_.resize(texels);
+  std::iota(active_.begin(), active_.end(), 0U);
+  samples_.assign(texels, 0);
+  sample_groups_.assign(texels, 0);
+  covered_.assign(texels, 0);
+  const auto spp = static_cast<std::uint32_t>(samples);
+  const bool adaptive = !error_scales.empty();
+  group_size_ =
+      std::clamp(spp / most_groups, 1U, (adaptive ? samples_a_check : most_samples) / most_groups);
   const std::uint32_t wave = group_size_ * most_groups;
-  for (first_sample_ = 0; first_sample_ < spp; first_sample_ += wave) {
+  for (first_sample_ = 0; first_sample_ < spp && !active_.empty(); first_sample_ += wave) {
     const std::uint32_t end = std::min(first_sample_ + wave, spp);
     start_paths(end);
     follow_paths();
     fold_wave(end);
+    if (adaptive) drop_settled(error_scales, end == spp);
   }
 }
 
@@ -98,23 +117,22 @@ void PathBlock::start_paths(std::uint32_t end_sample) {
   next_.clear();
   const float start = scene.top() + 1e-3F * std::max(1.0F, std::abs(scene.top()));
   const float back = (start - tracer_.mesostructure().reference_height) / view_.z;
-  for (int y = 0; y < rows_; ++y) {
-    for (int x = 0; x < columns_; ++x) {
-      for (std::uint32_t sample = first_sample_; sample < end_sample; ++sample) {
-        const Path path{Rgb(1, 1, 1), -view_, 0, 0, 0, static_cast<std::uint32_t>(y * columns_ + x),
-                        sample};
-        const auto [u, v] = stratified(path, texel_pair);
-        const float px = (static_cast<float>(left_ + x) + u) / static_cast<float>(s.width);
-        const float py = 1 - (static_cast<float>(top_ + y) + v) / static_cast<float>(s.height);
-        send(path,
-             Vec3(tile_fraction(px + view_.x * back), tile_fraction(py + view_.y * back), start),
-             Coherence::coherent);
-      }
+  for (const std::uint32_t texel : active_) {
+    const int x = left_ + static_cast<int>(texel) % columns_;
+    const int y = top_ + static_cast<int>(texel) / columns_;
+    for (std::uint32_t sample = first_sample_; sample < end_sample; ++sample) {
+      const Path path{Rgb(1, 1, 1), -view_, 0, 0, 0, texel, sample};
+      const auto [u, v] = stratified(path, texel_pair);
+      const float px = (static_cast<float>(x) + u) / static_cast<float>(s.width);
+      const float py = 1 - (static_cast<float>(y) + v) / static_cast<float>(s.height);
+      send(path,
+           Vec3(tile_fraction(px + view_.x * back), tile_fraction(py + view_.y * back), start),
+           Coherence::coherent);
     }
   }
   flush(Coherence::coherent);
   const std::int64_t started =
-      static_cast<std::int64_t>(columns_) * rows_ * (end_sample - first_sample_);
+      static_cast<std::int64_t>(active_.size()) * (end_sample - first_sample_);
   statistics_.paths += started;
   statistics_.primary_rays += started;
   statistics_.missed += started - static_cast<std::int64_t>(next_.size());
@@ -129,6 +147,7 @@ void PathBlock::send(const Path& path, const Vec3& origin, Coherence coherence) 
 void PathBlock::flush(Coherence coherence) {
   if (sent_count_ == 0) return;
   const auto active = static_cast<std::uint16_t>((1U << sent_count_) - 1U);
+  if (log_ != nullptr) log_->add(packet_, active, coherence);
   statistics_.rays_traced_on += tracer_.scene().intersect(packet_, active, coherence);
   for (std::size_t i = 0; i < sent_count_; ++i) {
     if (packet_.mesh[i] == RayHit::none) continue;
@@ -142,6 +161,7 @@ void PathBlock::flush(Coherence coherence) {
 
 void PathBlock::follow_paths() {
   const int most = std::min(tracer_.settings().max_bounces, most_bounces);
+  const std::optional<float> cut = tracer_.settings().cut_height;
   for (int bounce = 0; !next_.empty(); ++bounce) {
     std::swap(paths_, next_);
     next_.clear();
@@ -153,6 +173,7 @@ void PathBlock::follow_paths() {
         ++statistics_.degenerate;
         continue;
       }
+      if (bounce == 0 && cut && origin.z >= *cut) ++covered_[path.texel];
       connect(path, vertex, origin, bounce);
       if (!last && scatter(path, vertex, bounce)) {
         ++statistics_.bounce_rays;
@@ -264,7 +285,7 @@ void PathBlock::trace_connections(ShadowQueue& queue, Coherence coherence) {
     add(light, c, visible ? check_every : -static_cast<float>(check_every));
   };
   statistics_.rays_traced_on +=
-      queue.trace(tracer_.scene(), tracer_.lights().directions(), coherence, arrive);
+      queue.trace(tracer_.scene(), tracer_.lights().directions(), coherence, log_, arrive);
 }
 
 bool PathBlock::scatter(Path& path, const Vertex& vertex, int bounce) {
@@ -295,9 +316,9 @@ bool PathBlock::scatter(Path& path, const Vertex& vertex, int bounce) {
 void PathBlock::fold_wave(std::uint32_t end_sample) {
   const std::uint32_t samples = end_sample - first_sample_;
   const std::uint32_t groups = (samples + group_size_ - 1) / group_size_;
-  sample_groups_ += static_cast<int>(groups);
-  const auto texels = static_cast<std::size_t>(columns_) * rows_;
-  for (std::size_t texel = 0; texel < texels; ++texel) {
+  for (const std::uint32_t texel : active_) {
+    samples_[texel] += samples;
+    sample_groups_[texel] += groups;
     for (std::uint32_t s = 0; s < groups; ++s) {
       const double inverse = 1.0 / std::min(group_size_, samples - s * group_size_);
       for (std::size_t g = 0; g < groups_; ++g) {
@@ -322,19 +343,35 @@ void PathBlock::fold_wave(std::uint32_t end_sample) {
 }
 
 // From sum over groups of S^2 / n, S a group's sum of n samples, and the sum of all N samples.
-double PathBlock::variance_of(double squares, double sum) const {
-  return std::max(0.0, squares - sum * sum / samples_) / (sample_groups_ - 1) / samples_;
+double PathBlock::variance_of(std::size_t texel, double squares, double sum) const {
+  const double n = samples_[texel];
+  return std::max(0.0, squares - sum * sum / n) / (sample_groups_[texel] - 1.0) / n;
 }
 
 double PathBlock::variance(std::size_t texel, std::size_t light, int channel) const {
   const std::size_t i = place(texel, light, channel);
-  return variance_of(squares_[i], sums_[i]);
+  return variance_of(texel, squares_[i], sums_[i]);
+}
+
+double PathBlock::grey_mean(std::size_t texel, std::size_t light) const {
+  return (mean(texel, light, 0) + mean(texel, light, 1) + mean(texel, light, 2)) / 3;
 }
 
 double PathBlock::grey_variance(std::size_t texel, std::size_t light) const {
-  double sum = 0;
-  for (int c = 0; c < 3; ++c) sum += sums_[place(texel, light, c)] / 3;
-  return variance_of(grey_squares_[texel * groups_ * lanes + light], sum);
+  return variance_of(texel, grey_squares_[texel * groups_ * lanes + light],
+                     grey_mean(texel, light) * samples_[texel]);
+}
+
+void PathBlock::drop_settled(std::span<const double> error_scales, bool last) {
+  const double target = tracer_.settings().error;
+  const auto squares = static_cast<double>(error_scales.size());
+  std::erase_if(active_, [&](std::uint32_t texel) {
+    double sum = 0;
+    for (std::size_t l = 0; l < error_scales.size(); ++l)
+      sum += grey_variance(texel, l) / (error_scales[l] * error_scales[l]);
+    return sum < target * target * squares;
+  });
+  if (last) statistics_.unsettled += static_cast<std::int64_t>(active_.size());
 }
 
 }  // namespace weft

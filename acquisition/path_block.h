@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "acquisition/packet_log.h"
 #include "acquisition/shadow_queue.h"
 #include "acquisition/view_tracer.h"
 #include "tracer/frame.h"
@@ -23,25 +24,35 @@ class PathBlock {
   /// Texels a side of a block: fewer where the lights are many, so that the sums stay in the cache.
   static int edge_for(std::size_t lights);
 
-  /// @param tracer  outlives the block.
-  explicit PathBlock(const ViewTracer& tracer);
+  /// Memory of one block.
+  static std::size_t bytes_for(std::size_t lights);
 
-  /// Traces all samples of the texels from column `left` and row `top` on. What follows tells of
-  /// the last call.
-  void trace(const Direction& view, std::uint64_t view_key, int left, int top);
+  /// @param tracer  outlives the block.
+  /// @param log     gets a copy of every packet before it is traced; none where null.
+  explicit PathBlock(const ViewTracer& tracer, PacketLog* log = nullptr);
+
+  /// Traces `samples` samples of the texels from column `left` and row `top` on; fewer where a
+  /// texel reaches TraceSettings::error, measured in `error_scales`, one a light; empty: all of
+  /// them. What follows tells of the last call.
+  void trace(const Direction& view, std::uint64_t view_key, int samples,
+             std::span<const double> error_scales, int left, int top);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   /// Mean over the samples of a texel of the block (row * columns + column), for a light and a
   /// channel.
   double mean(std::size_t texel, std::size_t light, int channel) const {
-    return sums_[place(texel, light, channel)] / samples_;
+    return sums_[place(texel, light, channel)] / samples_[texel];
   }
   /// Variance of that mean, from the spread of groups of samples; conservative, as stratification
-  /// between groups is not credited. Needs two groups.
+  /// between groups is not credited. Needs two samples.
   double variance(std::size_t texel, std::size_t light, int channel) const;
   /// The same of the mean of RGB.
   double grey_variance(std::size_t texel, std::size_t light) const;
+  /// Share of the texel's rays that hit above `TraceSettings::cut_height`.
+  float coverage(std::size_t texel) const {
+    return static_cast<float>(covered_[texel]) / static_cast<float>(samples_[texel]);
+  }
   const TraceStatistics& statistics() const { return statistics_; }
 
  private:
@@ -89,17 +100,23 @@ class PathBlock {
   // Draws where a path goes on. False where it ends.
   bool scatter(Path& path, const Vertex& vertex, int bounce);
   void fold_wave(std::uint32_t end_sample);
-  double variance_of(double squares, double sum) const;
+  // Keeps the texels that need more samples.
+  void drop_settled(std::span<const double> error_scales, bool last);
+  double grey_mean(std::size_t texel, std::size_t light) const;
+  double variance_of(std::size_t texel, double squares, double sum) const;
 
   const ViewTracer& tracer_;
+  PacketLog* log_;
   std::size_t groups_;  // of sixteen lights
   Direction view_;
   int left_ = 0;
   int top_ = 0;
   int columns_ = 0;
   int rows_ = 0;
-  int samples_ = 0;
-  int sample_groups_ = 0;            // so far
+  std::vector<std::uint32_t> active_;         // texels that get more samples
+  std::vector<std::uint32_t> samples_;        // of each texel, so far
+  std::vector<std::uint32_t> sample_groups_;  // the same in groups
+  std::vector<std::uint32_t> covered_;
   std::uint32_t group_size_ = 1;     // samples
   std::uint32_t first_sample_ = 0;   // of the wave
   std::vector<std::uint64_t> keys_;  // of each texel, for its random numbers

@@ -38,6 +38,11 @@ class PeriodicScene {
   /// The same for occlusion: tfar < 0 afterwards where something is in the way.
   std::int64_t occluded(RayPacket& packet, std::uint16_t active, Coherence coherence) const;
 
+  /// Sets tfar to where each ray leaves the copies. Returns the rays that leave them sideways.
+  std::uint16_t bound(RayPacket& packet) const;
+  /// The copies, for rays that `bound` has ended.
+  const RayScene& copies() const { return scene_; }
+
   /// The same for one ray. `distance` is not that to the hit where it was traced on.
   RayHit intersect(const Vec3& origin, const Vec3& direction) const;
 
@@ -51,7 +56,6 @@ class PeriodicScene {
     std::int64_t rays = 0;
   };
   Exit exit(const Vec3& origin, const Vec3& direction) const;
-  std::uint16_t bound(RayPacket& packet) const;
   TracedOn trace_on(Vec3 origin, const Vec3& direction) const;
 
   float bottom_;

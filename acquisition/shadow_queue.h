@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "acquisition/packet_log.h"
 #include "acquisition/periodic_scene.h"
 #include "btf/direction.h"
 
@@ -33,12 +34,13 @@ class ShadowQueue {
   }
 
   /// Traces all, then forgets them.
+  /// @param log     gets a copy of every packet before it is traced; none where null.
   /// @param arrive  called with (light, connection, visible) for each, in order of lights, then of
   /// `add`.
   /// @returns how many rays were traced on beyond the copies.
   template <typename Arrive>
   std::int64_t trace(const PeriodicScene& scene, std::span<const Direction> lights,
-                     Coherence coherence, const Arrive& arrive) {
+                     Coherence coherence, PacketLog* log, const Arrive& arrive) {
     std::int64_t traced_on = 0;
     for (std::size_t l = 0; l < lights.size(); ++l) {
       std::vector<Connection>& queue = connections_[l];
@@ -46,8 +48,9 @@ class ShadowQueue {
         const std::size_t count = std::min<std::size_t>(lanes, queue.size() - first);
         RayPacket packet{};
         for (std::size_t i = 0; i < count; ++i) packet.set(i, queue[first + i].origin, lights[l]);
-        traced_on +=
-            scene.occluded(packet, static_cast<std::uint16_t>((1U << count) - 1U), coherence);
+        const auto active = static_cast<std::uint16_t>((1U << count) - 1U);
+        if (log != nullptr) log->add(packet, active, coherence);
+        traced_on += scene.occluded(packet, active, coherence);
         for (std::size_t i = 0; i < count; ++i) arrive(l, queue[first + i], !(packet.tfar[i] < 0));
       }
       queue.clear();

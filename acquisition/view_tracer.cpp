@@ -11,16 +11,19 @@
 
 #include "acquisition/path_block.h"
 #include "btf/error.h"
+#include "btf/random.h"
 
 namespace weft {
 
 namespace {
 
 constexpr double lowest_theta = 89.9;  // degrees
+constexpr int pilot_spp = 4;           // that tell how bright a pair is, see TraceSettings::error
 
 }  // namespace
 
 TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
+  texels += other.texels;
   paths += other.paths;
   primary_rays += other.primary_rays;
   bounce_rays += other.bounce_rays;
@@ -32,6 +35,7 @@ TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
   rays_traced_on += other.rays_traced_on;
   missed += other.missed;
   degenerate += other.degenerate;
+  unsettled += other.unsettled;
   trapped += other.trapped;
   invalid += other.invalid;
   return *this;
@@ -68,14 +72,22 @@ VisibilityTable table_for(const std::vector<Facet>& facets, const LightSet& ligh
 
 }  // namespace
 
+TraceableStructure::TraceableStructure(Mesostructure structure)
+    : mesostructure(std::move(structure)),
+      scene(mesostructure.mesh),
+      facets(facets_of(mesostructure.mesh)) {}
+
 ViewTracer::ViewTracer(Mesostructure mesostructure, std::vector<Direction> lights,
                        TraceSettings settings)
-    : mesostructure_(std::move(mesostructure)),
+    : ViewTracer(std::make_shared<const TraceableStructure>(std::move(mesostructure)),
+                 std::move(lights), settings) {}
+
+ViewTracer::ViewTracer(std::shared_ptr<const TraceableStructure> structure,
+                       std::vector<Direction> lights, TraceSettings settings)
+    : structure_(std::move(structure)),
       lights_(std::move(lights)),
       settings_(settings),
-      scene_(mesostructure_.mesh),
-      facets_(facets_of(mesostructure_.mesh)),
-      visibility_(table_for(facets_, lights_, scene_, settings_)) {
+      visibility_(table_for(facets(), lights_, scene(), settings_)) {
   check_elevations(lights_.directions(), "light");
   if (settings_.spp < 1)
     throw bad_input("--spp", fmt::format("is {}; expected at least 1", settings_.spp));
@@ -83,6 +95,11 @@ ViewTracer::ViewTracer(Mesostructure mesostructure, std::vector<Direction> light
     throw bad_input("--texels", fmt::format("is {} x {}; expected at least 1", settings_.width,
                                             settings_.height));
   }
+  if (lights_.size() == 0) throw bad_input("lights", "are none; expected at least one");
+  if (settings_.error < 0)
+    throw bad_input("--error", fmt::format("is {}; expected at least 0", settings_.error));
+  if ((settings_.error > 0 || settings_.texel_errors) && settings_.spp < 2)
+    throw bad_input("--spp", "is 1; expected at least 2, from whose spread an error can be told");
   if (settings_.max_bounces < 0) {
     throw bad_input("--max-bounces",
                     fmt::format("is {}; expected at least 0", settings_.max_bounces));
@@ -91,14 +108,40 @@ ViewTracer::ViewTracer(Mesostructure mesostructure, std::vector<Direction> light
 
 TracedView ViewTracer::trace(const Direction& view, std::uint64_t view_key) const {
   check_elevations({&view, 1}, "view");
+  if (!(settings_.error > 0)) return trace_blocks(view, view_key, settings_.spp, {});
+  TracedView pilot = trace_blocks(view, mix_bits(view_key), pilot_spp, {});
+  pilot.statistics.texels = 0;  // they are counted below
+  TracedView traced = trace_blocks(view, view_key, settings_.spp, error_scales(pilot.values));
+  traced.statistics += pilot.statistics;
+  return traced;
+}
+
+// For each light max(m, 1e-3 of the largest m), m the tile's mean; ones where all is black.
+std::vector<double> ViewTracer::error_scales(const std::vector<float>& values) const {
+  constexpr double darkest = 1e-3;
+  const std::size_t n = values.size() / lights_.size();
+  std::vector<double> scales(lights_.size());
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    for (std::size_t i = 0; i < n; ++i) scales[l] += values[l * n + i];
+    scales[l] /= static_cast<double>(n);
+  }
+  const double largest = *std::ranges::max_element(scales);
+  for (double& scale : scales) scale = largest > 0 ? std::max(scale, darkest * largest) : 1.0;
+  return scales;
+}
+
+TracedView ViewTracer::trace_blocks(const Direction& view, std::uint64_t view_key, int spp,
+                                    const std::vector<double>& error_scales) const {
   const int edge = PathBlock::edge_for(lights_.size());
   const int columns = (settings_.width + edge - 1) / edge;
   const int rows = (settings_.height + edge - 1) / edge;
   const std::size_t texels = static_cast<std::size_t>(settings_.width) * settings_.height;
   const auto blocks = static_cast<std::size_t>(columns) * rows;
-  const bool with_errors = settings_.spp > 1;
+  const bool with_errors = spp > 1;
   TracedView traced;
   traced.values.resize(3 * lights_.size() * texels);
+  if (settings_.texel_errors) traced.texel_errors.resize(traced.values.size());
+  if (settings_.cut_height) traced.coverage.resize(texels);
   std::vector<std::vector<double>> variances(blocks);  // of each light's sum over the block
   std::vector<TraceStatistics> statistics(blocks);
   tbb::enumerable_thread_specific<PathBlock> workers([&] { return PathBlock(*this); });
@@ -106,19 +149,22 @@ TracedView ViewTracer::trace(const Direction& view, std::uint64_t view_key) cons
     PathBlock& block = workers.local();
     const int left = static_cast<int>(b) % columns * edge;
     const int top = static_cast<int>(b) / columns * edge;
-    block.trace(view, view_key, left, top);
+    block.trace(view, view_key, spp, error_scales, left, top);
     variances[b].resize(lights_.size());
-    for (std::size_t l = 0; l < lights_.size(); ++l) {
-      for (int y = 0; y < block.rows(); ++y) {
-        float* out =
-            &traced.values[3 * (l * texels + static_cast<std::size_t>(top + y) * settings_.width +
-                                static_cast<std::size_t>(left))];
-        for (int x = 0; x < block.columns(); ++x, out += 3) {
-          const auto texel = static_cast<std::size_t>(y) * block.columns() + x;
+    for (int y = 0; y < block.rows(); ++y) {
+      for (int x = 0; x < block.columns(); ++x) {
+        const auto texel = static_cast<std::size_t>(y) * block.columns() + x;
+        const std::size_t place = static_cast<std::size_t>(top + y) * settings_.width +
+                                  static_cast<std::size_t>(left + x);
+        if (settings_.cut_height) traced.coverage[place] = block.coverage(texel);
+        for (std::size_t l = 0; l < lights_.size(); ++l) {
           for (int c = 0; c < 3; ++c) {
+            const std::size_t i = 3 * (l * texels + place) + static_cast<std::size_t>(c);
             const double mean = block.mean(texel, l, c);
-            out[c] = mean < 0 ? 0.0F : static_cast<float>(mean);
             statistics[b].negative += mean < 0 ? 1 : 0;
+            traced.values[i] = mean < 0 ? 0.0F : static_cast<float>(mean);
+            if (settings_.texel_errors)
+              traced.texel_errors[i] = static_cast<float>(std::sqrt(block.variance(texel, l, c)));
           }
           if (with_errors) variances[b][l] += block.grey_variance(texel, l);
         }

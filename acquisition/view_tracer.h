@@ -7,6 +7,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "acquisition/facets.h"
@@ -26,11 +28,19 @@ struct TraceSettings {
   int max_bounces = 8;  ///< reflections after the first, to 4,096; 0 is direct light
   /// How many views are to be traced, on which it depends whether a visibility table pays.
   std::size_t views = 1;
+  /// Where > 0, a texel of a view gets samples, at least 16 and at most `spp`, until the root mean
+  /// square over lights of its standard error / max(m, 1e-3 of the largest m) is below; m is the
+  /// tile's mean for that light, as a few other samples tell, and all is of the mean of RGB.
+  /// Stopping on what the samples say is biased by a part of that error.
+  double error = 0;
+  bool texel_errors = false;        ///< also the standard error of every value
+  std::optional<float> cut_height = {};  ///< also the share of each texel's rays that hit above it
   std::uint64_t seed = 0;
 };
 
 /// What tracing cost, and what it met.
 struct TraceStatistics {
+  std::int64_t texels = 0;  ///< of views
   std::int64_t paths = 0;
   std::int64_t primary_rays = 0;
   std::int64_t bounce_rays = 0;
@@ -48,6 +58,7 @@ struct TraceStatistics {
   std::int64_t invalid =
       0;  ///< directions drawn with a density that is not a number, where a path ends
   std::int64_t degenerate = 0;  ///< hits on triangles without an area, where a path ends
+  std::int64_t unsettled = 0;  ///< texels of views that had all samples and missed the target error
 
   std::int64_t rays() const { return primary_rays + bounce_rays + shadow_rays + rays_traced_on; }
   TraceStatistics& operator+=(const TraceStatistics& other);
@@ -59,13 +70,25 @@ struct TracedView {
   /// conservative, as stratification between groups is not credited. Empty with fewer than two
   /// samples.
   std::vector<float> standard_errors;
+  std::vector<float> texel_errors;  ///< as `values`; empty where not asked for
+  std::vector<float> coverage;      ///< [y][x], 0 to 1; empty where not asked for
   TraceStatistics statistics;
+};
+
+/// A mesostructure made ready for rays.
+struct TraceableStructure {
+  explicit TraceableStructure(Mesostructure structure);
+  Mesostructure mesostructure;
+  PeriodicScene scene;
+  std::vector<Facet> facets;
 };
 
 class ViewTracer {
  public:
   /// @param lights  unit vectors, at most 89.9 degrees from the normal. @throws Error naming one
   /// that is not.
+  ViewTracer(std::shared_ptr<const TraceableStructure> structure, std::vector<Direction> lights,
+             TraceSettings settings);
   ViewTracer(Mesostructure mesostructure, std::vector<Direction> lights, TraceSettings settings);
 
   /// Traces one view with all of TBB's threads. `view_key` names the view in the random numbers.
@@ -74,18 +97,19 @@ class ViewTracer {
 
   const LightSet& lights() const { return lights_; }
   const TraceSettings& settings() const { return settings_; }
-  const Mesostructure& mesostructure() const { return mesostructure_; }
-
-  const PeriodicScene& scene() const { return scene_; }
-  const std::vector<Facet>& facets() const { return facets_; }
+  const Mesostructure& mesostructure() const { return structure_->mesostructure; }
+  const PeriodicScene& scene() const { return structure_->scene; }
+  const std::vector<Facet>& facets() const { return structure_->facets; }
   const VisibilityTable& visibility() const { return visibility_; }
 
  private:
-  Mesostructure mesostructure_;
+  std::vector<double> error_scales(const std::vector<float>& values) const;
+  TracedView trace_blocks(const Direction& view, std::uint64_t view_key, int spp,
+                          const std::vector<double>& error_scales) const;
+
+  std::shared_ptr<const TraceableStructure> structure_;
   LightSet lights_;
   TraceSettings settings_;
-  PeriodicScene scene_;
-  std::vector<Facet> facets_;
   VisibilityTable visibility_;
 };
 

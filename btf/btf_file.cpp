@@ -101,12 +101,10 @@ bool BtfWriter::has_view(std::size_t view) const {
   return fs::exists(view_path(view));
 }
 
-void BtfWriter::write_view(std::size_t view, std::span<const float> values,
-                           std::span<const float> standard_errors) {
-  check_storable(view, values, header_.width, header_.height, header_.pixel_type);
+void BtfWriter::write_view(std::size_t view, const ViewData& data) {
+  check_storable(view, data.values, header_.width, header_.height, header_.pixel_type);
   const ViewFileHeader file{header_.width, header_.height, header_.pixel_type, header_.provenance};
-  write_view_file(view_path(view), file, header_.views[view], header_.lights.directions(), values,
-                  standard_errors);
+  write_view_file(view_path(view), file, header_.views[view], header_.lights.directions(), data);
 }
 
 std::vector<std::size_t> missing_views(const fs::path& folder, const BtfHeader& header) {
@@ -216,7 +214,10 @@ void write_btf(const fs::path& folder, const Btf& btf) {
                    .provenance = btf.provenance,
                    .standard_errors = {}};
   BtfWriter writer(folder, std::move(header));
-  for (std::size_t v = 0; v < btf.views().size(); ++v) writer.write_view(v, btf.view_values(v));
+  for (std::size_t v = 0; v < btf.views().size(); ++v) {
+    const std::vector<float> values = btf.view_values(v);
+    writer.write_view(v, {.values = values});
+  }
   writer.finish();
 }
 

@@ -5,13 +5,18 @@
 #include <string>
 
 #include "btf/btf.h"
+#include "btf/view_file.h"
 
 namespace weft {
+
+/// The quantity that Weft traces.
+inline constexpr const char* traced_quantity =
+    "radiance per perpendicular irradiance, 1/sr, cosine included";
 
 /// What `btf.json` tells, without the pixels.
 struct BtfHeader {
   int version = 1;
-  std::string quantity = "radiance per perpendicular irradiance, 1/sr, cosine included";
+  std::string quantity = traced_quantity;
   int width = 0;
   int height = 0;
   HemisphereSampling views;
@@ -46,14 +51,11 @@ class BtfWriter {
 
   bool has_view(std::size_t view) const;
 
-  /// @param values           [light][y][x][rgb], lights x height x width x 3 floats, finite and >=
-  /// 0.
-  /// @param standard_errors  of each light's tile mean; empty where not known.
+  /// @param data  `values` are finite and >= 0.
   /// @throws Error  bad_input where a half would overflow (count and the worst sample named) or a
   /// value is NaN,
   ///                infinite or negative; failed where the disk is full.
-  void write_view(std::size_t view, std::span<const float> values,
-                  std::span<const float> standard_errors = {});
+  void write_view(std::size_t view, const ViewData& data);
 
   /// `finish_btf` of this dataset.
   void finish() const { finish_btf(folder_, header_); }

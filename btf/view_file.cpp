@@ -28,25 +28,49 @@ namespace {
 
 constexpr const char* channel_names[] = {"R", "G", "B"};
 
+constexpr const char* error_suffix = ".error";
+constexpr const char* coverage_part = "alpha";
+
+std::string part_name(std::size_t light) {
+  return fmt::format("light_{:03}", light);
+}
+
+Imf::Header part_header(const ViewFileHeader& file, const std::string& name) {
+  Imf::Header header(file.width, file.height);
+  // Sixteen lines are packed together. Line by line (ZIPS) takes three times as long, and a quarter
+  // more space.
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.setName(name);
+  header.setType(Imf::SCANLINEIMAGE);
+  header.insert("weftProvenance", Imf::StringAttribute(file.provenance));
+  return header;
+}
+
 std::vector<Imf::Header> part_headers(const ViewFileHeader& file, const Direction& view,
-                                      std::span<const Direction> lights,
-                                      std::span<const float> standard_errors) {
+                                      std::span<const Direction> lights, const ViewData& data) {
   const Imf::PixelType type = file.pixel_type == PixelType::half ? Imf::HALF : Imf::FLOAT;
   std::vector<Imf::Header> headers;
-  for (std::size_t l = 0; l < lights.size(); ++l) {
-    Imf::Header header(file.width, file.height);
-    header.compression() = Imf::ZIPS_COMPRESSION;
-    header.setName(fmt::format("light_{:03}", l));
-    header.setType(Imf::SCANLINEIMAGE);
-    for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(type));
+  const auto add_lights = [&](const std::string& suffix) {
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+      Imf::Header header = part_header(file, part_name(l) + suffix);
+      for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(type));
+      header.insert("viewTheta", Imf::FloatAttribute(degrees(theta_of(view))));
+      header.insert("viewPhi", Imf::FloatAttribute(degrees(phi_of(view))));
+      header.insert("lightTheta", Imf::FloatAttribute(degrees(theta_of(lights[l]))));
+      header.insert("lightPhi", Imf::FloatAttribute(degrees(phi_of(lights[l]))));
+      if (suffix.empty() && !data.standard_errors.empty()) {
+        header.insert("standardError", Imf::FloatAttribute(data.standard_errors[l]));
+      }
+      headers.push_back(header);
+    }
+  };
+  add_lights("");
+  if (!data.texel_errors.empty()) add_lights(error_suffix);
+  if (!data.coverage.empty()) {
+    Imf::Header header = part_header(file, coverage_part);
+    header.channels().insert("A", Imf::Channel(Imf::FLOAT));
     header.insert("viewTheta", Imf::FloatAttribute(degrees(theta_of(view))));
     header.insert("viewPhi", Imf::FloatAttribute(degrees(phi_of(view))));
-    header.insert("lightTheta", Imf::FloatAttribute(degrees(theta_of(lights[l]))));
-    header.insert("lightPhi", Imf::FloatAttribute(degrees(phi_of(lights[l]))));
-    header.insert("weftProvenance", Imf::StringAttribute(file.provenance));
-    if (!standard_errors.empty()) {
-      header.insert("standardError", Imf::FloatAttribute(standard_errors[l]));
-    }
     headers.push_back(header);
   }
   return headers;
@@ -62,6 +86,14 @@ Imf::FrameBuffer frame_buffer(const Value* rgb, int width) {
     buffer.insert(channel_names[c],
                   Imf::Slice(type, base, 3 * sizeof(Value), 3 * sizeof(Value) * width));
   }
+  return buffer;
+}
+
+Imf::FrameBuffer coverage_buffer(const float* coverage, int width) {
+  Imf::FrameBuffer buffer;
+  buffer.insert("A",
+                Imf::Slice(Imf::FLOAT, const_cast<char*>(reinterpret_cast<const char*>(coverage)),
+                           sizeof(float), sizeof(float) * width));
   return buffer;
 }
 
@@ -92,22 +124,30 @@ std::string renamed(std::string message, const fs::path& temporary, const fs::pa
 }
 
 void write_parts(const fs::path& path, const ViewFileHeader& header,
-                 const std::vector<Imf::Header>& parts, std::span<const float> values) {
+                 const std::vector<Imf::Header>& parts, const ViewData& data) {
   const std::size_t part_size = static_cast<std::size_t>(3) * header.width * header.height;
   Imf::MultiPartOutputFile file(path.c_str(), parts.data(), static_cast<int>(parts.size()), false,
                                 0);
   std::vector<half> halfs(header.pixel_type == PixelType::half ? part_size : 0);
-  for (std::size_t l = 0; l < parts.size(); ++l) {
-    const std::span<const float> part = values.subspan(l * part_size, part_size);
-    Imf::OutputPart out(file, static_cast<int>(l));
-    if (header.pixel_type == PixelType::half) {
-      for (std::size_t i = 0; i < part_size; ++i) halfs[i] = part[i];
-      out.setFrameBuffer(frame_buffer(halfs.data(), header.width));
-    } else {
-      out.setFrameBuffer(frame_buffer(part.data(), header.width));
+  int next = 0;
+  const auto write_lights = [&](std::span<const float> values) {
+    for (; !values.empty(); values = values.subspan(part_size)) {
+      Imf::OutputPart out(file, next++);
+      if (header.pixel_type == PixelType::half) {
+        for (std::size_t i = 0; i < part_size; ++i) halfs[i] = values[i];
+        out.setFrameBuffer(frame_buffer(halfs.data(), header.width));
+      } else {
+        out.setFrameBuffer(frame_buffer(values.data(), header.width));
+      }
+      out.writePixels(header.height);
     }
-    out.writePixels(header.height);
-  }
+  };
+  write_lights(data.values);
+  write_lights(data.texel_errors);
+  if (data.coverage.empty()) return;
+  Imf::OutputPart out(file, next);
+  out.setFrameBuffer(coverage_buffer(data.coverage.data(), header.width));
+  out.writePixels(header.height);
 }
 
 // OpenEXR swallows errors when it closes a file: what is on disk tells.
@@ -126,13 +166,12 @@ bool is_whole(const fs::path& path) {
 }  // namespace
 
 void write_view_file(const fs::path& path, const ViewFileHeader& header, const Direction& view,
-                     std::span<const Direction> lights, std::span<const float> values,
-                     std::span<const float> standard_errors) {
-  const std::vector<Imf::Header> parts = part_headers(header, view, lights, standard_errors);
+                     std::span<const Direction> lights, const ViewData& data) {
+  const std::vector<Imf::Header> parts = part_headers(header, view, lights, data);
   write_atomically(path, [&](const fs::path& temporary) {
     errno = 0;
     try {
-      write_parts(temporary, header, parts, values);
+      write_parts(temporary, header, parts, data);
     } catch (const std::exception& error) {
       throw failed(path.string(), "cannot be written: " + renamed(error.what(), temporary, path));
     }
@@ -161,47 +200,99 @@ std::vector<float> read_standard_errors(const fs::path& path) {
   std::vector<float> errors;
   for (int l = 0; l < file.parts(); ++l) {
     const auto* value = file.header(l).findTypedAttribute<Imf::FloatAttribute>("standardError");
-    if (value == nullptr) return {};
+    if (value == nullptr) break;
     errors.push_back(value->value());
   }
   return errors;
 }
 
-std::vector<float> read_view_values(const fs::path& path, int width, int height,
-                                    std::size_t lights) {
-  Imf::MultiPartInputFile file = open_view(path);
-  if (file.parts() != static_cast<int>(lights)) {
-    throw bad_input(path.string(),
-                    fmt::format("has {} parts; expected {}, one a light", file.parts(), lights));
+namespace {
+
+// Number of the first part whose name ends so; -1 where there is none.
+int first_part(const Imf::MultiPartInputFile& file, const std::string& ending) {
+  for (int p = 0; p < file.parts(); ++p) {
+    if (file.header(p).hasName() && file.header(p).name().ends_with(ending)) return p;
   }
+  return -1;
+}
+
+void check_part(const fs::path& path, const Imf::Header& header, int part, int width, int height) {
+  const Imath::Box2i window = header.dataWindow();
+  if (window.max.x - window.min.x + 1 != width || window.max.y - window.min.y + 1 != height) {
+    throw bad_input(path.string(), fmt::format("part {} is {} x {}; expected {} x {} texels", part,
+                                               window.max.x - window.min.x + 1,
+                                               window.max.y - window.min.y + 1, width, height));
+  }
+  if (window.min != Imath::V2i(0, 0)) {
+    throw bad_input(path.string(), fmt::format("part {} starts at ({}, {}); expected (0, 0)", part,
+                                               window.min.x, window.min.y));
+  }
+}
+
+void read_part(const fs::path& path, Imf::MultiPartInputFile& file, int part,
+               const Imf::FrameBuffer& buffer, int height) {
+  for (auto slice = buffer.begin(); slice != buffer.end(); ++slice) {
+    if (file.header(part).channels().findChannel(slice.name()) == nullptr) {
+      throw bad_input(path.string(), fmt::format("part {} has no channel {}", part, slice.name()));
+    }
+  }
+  try {
+    Imf::InputPart in(file, part);
+    in.setFrameBuffer(buffer);
+    in.readPixels(0, height - 1);
+  } catch (const std::exception& error) {
+    throw unreadable(path, error.what());
+  }
+}
+
+// [light][y][x][rgb] of as many parts from `first` on.
+std::vector<float> read_lights(const fs::path& path, Imf::MultiPartInputFile& file, int first,
+                               int width, int height, std::size_t lights) {
   const std::size_t part_size = static_cast<std::size_t>(3) * width * height;
   std::vector<float> values(part_size * lights);
   for (std::size_t l = 0; l < lights; ++l) {
-    const Imf::Header& header = file.header(static_cast<int>(l));
-    const Imath::Box2i window = header.dataWindow();
-    if (window.max.x - window.min.x + 1 != width || window.max.y - window.min.y + 1 != height) {
-      throw bad_input(path.string(), fmt::format("part {} is {} x {}; expected {} x {} texels", l,
-                                                 window.max.x - window.min.x + 1,
-                                                 window.max.y - window.min.y + 1, width, height));
-    }
-    if (window.min != Imath::V2i(0, 0)) {
-      throw bad_input(path.string(), fmt::format("part {} starts at ({}, {}); expected (0, 0)", l,
-                                                 window.min.x, window.min.y));
-    }
-    for (const char* name : channel_names) {
-      if (header.channels().findChannel(name) == nullptr) {
-        throw bad_input(path.string(), fmt::format("part {} has no channel {}", l, name));
-      }
-    }
-    try {
-      Imf::InputPart part(file, static_cast<int>(l));
-      part.setFrameBuffer(frame_buffer(values.data() + l * part_size, width));
-      part.readPixels(window.min.y, window.max.y);
-    } catch (const std::exception& error) {
-      throw unreadable(path, error.what());
-    }
+    const int part = first + static_cast<int>(l);
+    check_part(path, file.header(part), part, width, height);
+    read_part(path, file, part, frame_buffer(values.data() + l * part_size, width), height);
   }
   return values;
+}
+
+}  // namespace
+
+std::vector<float> read_view_values(const fs::path& path, int width, int height,
+                                    std::size_t lights) {
+  Imf::MultiPartInputFile file = open_view(path);
+  const int errors = first_part(file, error_suffix);
+  const int coverage = first_part(file, coverage_part);
+  const int found = errors >= 0 ? errors : coverage >= 0 ? coverage : file.parts();
+  if (found != static_cast<int>(lights)) {
+    throw bad_input(path.string(),
+                    fmt::format("has {} parts; expected {}, one a light", found, lights));
+  }
+  return read_lights(path, file, 0, width, height, lights);
+}
+
+std::vector<float> read_texel_errors(const fs::path& path, int width, int height,
+                                     std::size_t lights) {
+  Imf::MultiPartInputFile file = open_view(path);
+  const int first = first_part(file, error_suffix);
+  if (first < 0) return {};
+  if (file.parts() < first + static_cast<int>(lights)) {
+    throw bad_input(path.string(), fmt::format("has {} parts; expected {} with standard errors",
+                                               file.parts() - first, lights));
+  }
+  return read_lights(path, file, first, width, height, lights);
+}
+
+std::vector<float> read_coverage(const fs::path& path, int width, int height) {
+  Imf::MultiPartInputFile file = open_view(path);
+  const int part = first_part(file, coverage_part);
+  if (part < 0) return {};
+  check_part(path, file.header(part), part, width, height);
+  std::vector<float> coverage(static_cast<std::size_t>(width) * height);
+  read_part(path, file, part, coverage_buffer(coverage.data(), width), height);
+  return coverage;
 }
 
 }  // namespace weft

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "acquisition/acquire.h"
+#include "acquisition/offgrid.h"
 #include "btf/btf_file.h"
 #include "btf/error.h"
 #include "cli/command.h"
@@ -29,6 +32,11 @@ struct Options {
   std::string max_bounces = "8";
   std::string pixel = "half";
   std::vector<std::string> set;
+  double error = 0;
+  bool variance = false;
+  std::optional<float> alpha;
+  std::size_t validate = 0;
+  std::uint64_t memory = 0;
   std::string shard;
   bool finish = false;
 };
@@ -62,6 +70,12 @@ AcquisitionSettings settings_of(const Options& options, const Session& session) 
   settings.views = options.views.empty() ? options.directions : options.views;
   settings.lights = options.lights.empty() ? options.directions : options.lights;
   settings.pixel_type = options.pixel == "float" ? PixelType::float32 : PixelType::half;
+  if (options.error < 0 || !std::isfinite(options.error))
+    throw bad_input("--error", fmt::format("is {}; expected a number above 0", options.error));
+  settings.trace.error = options.error;
+  settings.trace.texel_errors = options.variance;
+  settings.trace.cut_height = options.alpha;
+  settings.memory = options.memory;
   return settings;
 }
 
@@ -107,6 +121,17 @@ void report(const AcquisitionReport& result, const Options& options, Session& se
                       {"degenerate_hits", s.degenerate},
                       {"trapped_paths", s.trapped},
                       {"invalid_samples", s.invalid}};
+  if (options.error > 0) {
+    const double texels = static_cast<double>(s.texels);
+    session.measured["mean_spp"] = texels > 0 ? static_cast<double>(s.paths) / texels : 0;
+    session.measured["unsettled_percent"] =
+        texels > 0 ? 100 * static_cast<double>(s.unsettled) / texels : 0;
+    session.say(
+        fmt::format("{:.1f} spp in the mean; {:.2f} % of texels had all {} and stayed above "
+                    "the target error",
+                    session.measured["mean_spp"].get<double>(),
+                    session.measured["unsettled_percent"].get<double>(), options.spp));
+  }
   session.say(fmt::format("{}: {:.1f} s, {:.3g} rays/s, {:.3g} samples/s (texel x pair x spp)",
                           options.output, result.seconds, rays_per_second, samples_per_second));
   if (result.views_kept > 0)
@@ -160,6 +185,15 @@ void run(const Options& options, Session& session) {
   report(whole ? acquire(mesostructure, settings, options.output, progress)
                : acquire_shard(mesostructure, settings, shard, options.output, progress),
          options, session);
+  if (options.validate > 0) {
+    Progress pairs("off-grid pairs", session.quiet || session.json);
+    const AcquisitionReport offgrid =
+        acquire_offgrid(mesostructure, settings, options.validate, options.output, pairs);
+    session.measured["offgrid_pairs"] = options.validate;
+    session.measured["offgrid_seconds"] = offgrid.seconds;
+    session.say(fmt::format("{}/offgrid: {} pairs, {:.1f} s", options.output, options.validate,
+                            offgrid.seconds));
+  }
   const std::string record =
       whole ? "run.json" : fmt::format("run_{}of{}.json", shard.index, shard.count);
   append_run(std::filesystem::path(options.output) / record, session);
@@ -196,10 +230,27 @@ void add_acquire(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"half", "float"}));
   command->add_option("--set", options->set,
                       "KEY=VALUE overrides a key of the mesostructure, by its dotted path");
+  command->add_option(
+      "--error", options->error,
+      "Stop a texel of a view, after 16 spp at least, once the root mean square over "
+      "lights of its relative standard error is below; --spp is then the most");
+  command->add_flag("--variance", options->variance,
+                    "Also write the standard error of every value, as parts light_000.error ...");
+  command->add_option("--alpha", options->alpha,
+                      "Also write coverage, part alpha: the share of a texel's rays that hit at or "
+                      "above this height (tiles)");
+  CLI::Option* validate =
+      command->add_option("--validate", options->validate,
+                          "Also trace N random pairs between the directions into OUT/offgrid/");
+  command
+      ->add_option("--memory", options->memory,
+                   "Most memory, e.g. 4GiB: fewer views are traced at once; 0: as many as threads")
+      ->transform(CLI::AsSizeValue(false));
   CLI::Option* shard = command->add_option(
       "--shard", options->shard,
       "I/N, 0 <= I < N: only the views v with v % N = I, and no btf.json; any number of shards may "
       "run at once, on several machines, or again");
+  shard->excludes(validate);
   command
       ->add_flag("--finish", options->finish,
                  "Trace nothing: write btf.json once all shards' views are there; exit 1 naming "

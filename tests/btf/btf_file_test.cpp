@@ -87,14 +87,14 @@ TEST_CASE("a writer continues where another stopped, and keeps the noise") {
   const std::vector<float> values(3 * 6 * 8, 0.25F);
   const std::vector<float> errors(8, 0.125F);
   BtfWriter first(folder.path / "a.btf", header_of(btf));
-  first.write_view(0, values, errors);
+  first.write_view(0, {.values = values, .standard_errors = errors});
   CHECK_THROWS_WITH(first.finish(), Catch::Contains("view_001.exr"));
   CHECK_THROWS_AS(read_btf_header(folder.path / "a.btf"), Error);
   BtfWriter second(folder.path / "a.btf", header_of(btf));
   CHECK(second.has_view(0));
   for (std::size_t v = 1; v < 5; ++v) {
     CHECK_FALSE(second.has_view(v));
-    second.write_view(v, values, errors);
+    second.write_view(v, {.values = values, .standard_errors = errors});
   }
   second.finish();
   const BtfHeader header = read_btf_header(folder.path / "a.btf");
@@ -116,7 +116,8 @@ TEST_CASE("a folder is refused to other settings before the first view is there"
                     Catch::Contains("other settings") && Catch::Contains("unfinished.json") &&
                         Catch::Contains("/spp"));
   BtfWriter second(folder.path / "a.btf", header_of(btf));
-  for (std::size_t v = 0; v < 5; ++v) (v % 2 == 0 ? first : second).write_view(v, values);
+  for (std::size_t v = 0; v < 5; ++v)
+    (v % 2 == 0 ? first : second).write_view(v, {.values = values});
   CHECK_THROWS_WITH(missing_views(folder.path / "a.btf", other), Catch::Contains("other settings"));
   CHECK_THROWS_WITH(finish_btf(folder.path / "a.btf", other), Catch::Contains("other settings"));
   CHECK(names_in(folder.path / "a.btf").back() == "view_004.exr");
@@ -132,7 +133,8 @@ TEST_CASE("finishing names what is missing and makes nothing") {
   CHECK(missing_views(folder.path / "a.btf", header).size() == 5);
   CHECK_THROWS_WITH(finish_btf(folder.path / "a.btf", header), Catch::Contains("view_000.exr"));
   CHECK(std::filesystem::is_empty(folder.path));
-  BtfWriter(folder.path / "a.btf", header).write_view(3, std::vector<float>(3 * 6 * 8, 0.25F));
+  BtfWriter(folder.path / "a.btf", header)
+      .write_view(3, {.values = std::vector<float>(3 * 6 * 8, 0.25F)});
   CHECK(missing_views(folder.path / "a.btf", header) == std::vector<std::size_t>{0, 1, 2, 4});
 }
 
@@ -142,12 +144,12 @@ TEST_CASE("values that may not be stored are refused with their place") {
   std::vector<float> values(3 * 6 * 8, 1.0F);
   values[3 * (2 * 6 + 4) + 1] = 70000;  // light 2, texel (1, 1)
   CHECK_THROWS_WITH(
-      writer.write_view(1, values),
+      writer.write_view(1, {.values = values}),
       Catch::Contains("view 1, light 2, texel (1, 1)") && Catch::Contains("--pixel float"));
   values[3 * (2 * 6 + 4) + 1] = std::numeric_limits<float>::quiet_NaN();
-  CHECK_THROWS_WITH(writer.write_view(1, values), Catch::Contains("nan"));
+  CHECK_THROWS_WITH(writer.write_view(1, {.values = values}), Catch::Contains("nan"));
   values[3 * (2 * 6 + 4) + 1] = -1;
-  CHECK_THROWS_AS(writer.write_view(1, values), Error);
+  CHECK_THROWS_AS(writer.write_view(1, {.values = values}), Error);
   CHECK_FALSE(writer.has_view(1));
   CHECK(names_in(folder.path / "a.btf") == std::vector<std::string>{"unfinished.json"});
 }
@@ -203,7 +205,7 @@ TEST_CASE("a view that cannot be written is named, not its temporary file") {
   BtfWriter writer(folder.path / "a.btf", header_of(random_btf(PixelType::half)));
   std::filesystem::remove_all(folder.path / "a.btf");
   try {
-    writer.write_view(2, std::vector<float>(3 * 6 * 8, 1.0F));
+    writer.write_view(2, {.values = std::vector<float>(3 * 6 * 8, 1.0F)});
     FAIL("written to a folder that is not there");
   } catch (const Error& error) {
     CHECK_THAT(error.what(), Catch::Contains("view_002.exr") && !Catch::Contains(".part"));
