@@ -56,7 +56,7 @@ namespace {
 
 // The table is worth its rays where paths that each ask for every light are this many times those
 // of the table.
-constexpr double paths_a_ray = 2;
+constexpr double paths_a_ray = 1;
 constexpr double table_bytes = 512e6;
 
 VisibilityTable table_for(const std::vector<Facet>& facets, const LightSet& lights,
@@ -65,9 +65,10 @@ VisibilityTable table_for(const std::vector<Facet>& facets, const LightSet& ligh
   const double paths = static_cast<double>(s.views) * s.width * s.height * s.spp;
   const double bytes =
       cells * static_cast<double>(lights.groups() * sizeof(VisibilityTable::Answer));
-  const int rays = static_cast<int>(std::min(4.0, paths / (paths_a_ray * cells)));
-  if (rays < 1 || bytes > table_bytes) return {facets, lights};
-  return {facets, lights, scene, rays};
+  const double rays = paths / (paths_a_ray * cells);
+  if (!s.table || rays < VisibilityTable::least_rays || bytes > table_bytes)
+    return {facets, lights};
+  return {facets, lights, scene, static_cast<int>(std::min(rays, 1e3))};
 }
 
 }  // namespace

@@ -28,12 +28,14 @@ struct TraceSettings {
   int max_bounces = 8;  ///< reflections after the first, to 4,096; 0 is direct light
   /// How many views are to be traced, on which it depends whether a visibility table pays.
   std::size_t views = 1;
+  /// Without it every visibility query is traced.
+  bool table = true;
   /// Where > 0, a texel of a view gets samples, at least 16 and at most `spp`, until the root mean
   /// square over lights of its standard error / max(m, 1e-3 of the largest m) is below; m is the
   /// tile's mean for that light, as a few other samples tell, and all is of the mean of RGB.
   /// Stopping on what the samples say is biased by a part of that error.
   double error = 0;
-  bool texel_errors = false;        ///< also the standard error of every value
+  bool texel_errors = false;             ///< also the standard error of every value
   std::optional<float> cut_height = {};  ///< also the share of each texel's rays that hit above it
   std::uint64_t seed = 0;
 };

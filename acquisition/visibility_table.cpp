@@ -43,12 +43,16 @@ std::array<Barycentric, 3> corners_of(const Place& place, int side) {
   return {at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)};
 }
 
-// The middle, and points near the corners.
-Barycentric point_of(const std::array<Barycentric, 3>& corners, int k) {
-  std::array<float, 3> weight{1.0F / 3, 1.0F / 3, 1.0F / 3};
-  if (k > 0) {
-    weight.fill(0.05F);
-    weight[k - 1] = 0.9F;
+// A random point of a cell; four in a row lie in its four quarters.
+Barycentric point_of(const std::array<Barycentric, 3>& corners, std::size_t cell, int round) {
+  const std::uint64_t bits = hash_coordinates(cell, round);
+  std::array<float, 2> at{unit_float(bits), unit_float(bits << 32)};
+  if (at[0] + at[1] > 1) at = {1 - at[0], 1 - at[1]};
+  std::array<float, 3> weight{1 - at[0] - at[1], at[0], at[1]};
+  // Quarters: the one in the middle is turned round, the others touch a corner.
+  const int quarter = round % 4;
+  for (int c = 0; c < 3; ++c) {
+    weight[c] = quarter == 0 ? (1 - weight[c]) / 2 : (weight[c] + (c == quarter - 1 ? 1 : 0)) / 2;
   }
   Barycentric point{0, 0};
   for (int c = 0; c < 3; ++c) {
@@ -83,22 +87,6 @@ VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, const LightSe
     answers_[g].known = static_cast<std::uint16_t>(~lights.used_lanes(g));
 }
 
-VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights,
-                                 const PeriodicScene& scene, int rays_a_cell)
-    : VisibilityTable(facets, lights) {
-  const std::vector<Answer> nothing = std::move(answers_);
-  std::uint32_t count = 0;
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    const int side = cells_a_side(facets[f]);
-    cells_[f] = {count, static_cast<std::uint16_t>(side)};
-    count += static_cast<std::uint32_t>(side * side);
-  }
-  answers_.assign(count * groups_, {});
-  ask(facets, lights, scene, rays_a_cell);
-  agree(facets, lights);
-  answers_.insert(answers_.end(), nothing.begin(), nothing.end());
-}
-
 namespace {
 
 // Every cell of every facet, in the order of their numbers.
@@ -116,92 +104,165 @@ std::vector<Place> places_of(const std::vector<Cells>& cells) {
   return places;
 }
 
-}  // namespace
+// Asks round after round, and says what is certain so far.
+class Inquiry {
+ public:
+  using Answer = VisibilityTable::Answer;
 
-// Until `agree`, `visible` holds the lights that some point of the cell sees, and `known` those
-// that some point does not see.
-void VisibilityTable::ask(const std::vector<Facet>& facets, const LightSet& lights,
-                          const PeriodicScene& scene, int rays_a_cell) {
-  const std::vector<Place> places = places_of(cells_);
-  std::atomic<std::int64_t> rays = 0;
-  const auto ask_chunk = [&](std::size_t chunk) {
-    const std::size_t first = chunk * cells_at_once;
-    const std::size_t count = std::min(cells_at_once, places.size() - first);
-    std::int64_t traced = 0;
-    for (int k = 0; k < rays_a_cell; ++k) {
-      std::array<Vec3, cells_at_once> origins;
-      Vec3Lanes normals{};
-      for (std::size_t i = 0; i < count; ++i) {
-        const Place& place = places[first + i];
-        const Facet& facet = facets[place.facet];
-        const auto [u, v] = point_of(corners_of(place, cells_[place.facet].side), k);
-        origins[i] = ray_origin(facet.point(u, v), facet.normal);
-        normals.x[i] = facet.normal.x;
-        normals.y[i] = facet.normal.y;
-        normals.z[i] = facet.normal.z;
-      }
-      for (std::size_t l = 0; l < lights.size(); ++l) {
-        const std::uint16_t facing = bits_of_lanes(dot(lights[l], normals) > 0);
-        if (facing == 0) continue;
-        RayPacket packet{};
-        for (std::size_t i = 0; i < cells_at_once; ++i)
-          packet.set(i, i < count ? origins[i] : Vec3(0, 0, 0), lights[l]);
-        scene.occluded(packet, facing, Coherence::coherent);
-        const std::uint16_t hidden = facing & bits_of_lanes(packet.tfar < 0);
-        const auto bit = static_cast<std::uint16_t>(1U << (l % lanes));
-        for (std::size_t i = 0; i < count; ++i) {
-          if ((facing >> i & 1U) == 0) continue;
-          Answer& answer = answers_[(first + i) * groups_ + l / lanes];
-          ((hidden >> i & 1U) != 0 ? answer.known : answer.visible) |= bit;
-          ++traced;
+  Inquiry(const std::vector<Facet>& facets, const LightSet& lights, const PeriodicScene& scene,
+          std::vector<Place> places, std::vector<std::array<std::uint32_t, 3>> corners,
+          std::size_t corner_count, const std::vector<int>& sides)
+      : facets_(facets),
+        lights_(lights),
+        scene_(scene),
+        places_(std::move(places)),
+        corners_(std::move(corners)),
+        corner_count_(corner_count),
+        sides_(sides),
+        groups_(lights.groups()),
+        seen_(places_.size() * groups_),
+        hidden_(seen_.size()) {}
+
+  struct Round {
+    std::int64_t rays = 0;
+    std::int64_t certain = 0;       // of them, those whose answer was certain before
+    std::int64_t contradicted = 0;  // of those
+  };
+
+  // One ray from each cell to each light in front of it.
+  Round ask(int round, const std::vector<Answer>& answers) {
+    std::atomic<std::int64_t> rays = 0;
+    std::atomic<std::int64_t> certain = 0;
+    std::atomic<std::int64_t> contradicted = 0;
+    const std::size_t chunks = (places_.size() + cells_at_once - 1) / cells_at_once;
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+      const Round r = ask_chunk(chunk * cells_at_once, round, answers);
+      rays += r.rays;
+      certain += r.certain;
+      contradicted += r.contradicted;
+    });
+    return {rays, certain, contradicted};
+  }
+
+  // Certain is what all points of a cell and of the cells that touch it agree on.
+  void agree(std::vector<Answer>& answers) const {
+    std::vector<std::uint16_t> some_see(corner_count_ * groups_);
+    std::vector<std::uint16_t> some_do_not(corner_count_ * groups_);
+    for (std::size_t c = 0; c < places_.size(); ++c) {
+      for (const std::uint32_t corner : corners_[c]) {
+        for (std::size_t g = 0; g < groups_; ++g) {
+          some_see[corner * groups_ + g] |= seen_[c * groups_ + g];
+          some_do_not[corner * groups_ + g] |= hidden_[c * groups_ + g];
         }
       }
     }
-    rays += traced;
-  };
-  tbb::parallel_for(std::size_t{0}, (places.size() + cells_at_once - 1) / cells_at_once, ask_chunk);
-  rays_ = rays;
-}
+    for (std::size_t c = 0; c < places_.size(); ++c) {
+      for (std::size_t g = 0; g < groups_; ++g) {
+        unsigned seen = 0;
+        unsigned hidden = 0;
+        for (const std::uint32_t corner : corners_[c]) {
+          seen |= some_see[corner * groups_ + g];
+          hidden |= some_do_not[corner * groups_ + g];
+        }
+        const unsigned visible = seen_[c * groups_ + g] & ~hidden;
+        const unsigned blocked = hidden_[c * groups_ + g] & ~seen;
+        const unsigned unused = static_cast<std::uint16_t>(~lights_.used_lanes(g));
+        answers[c * groups_ + g] = {static_cast<std::uint16_t>(visible | blocked | unused),
+                                    static_cast<std::uint16_t>(visible)};
+      }
+    }
+  }
 
-// Certain is what all points of a cell and of the cells that touch it agree on.
-void VisibilityTable::agree(const std::vector<Facet>& facets, const LightSet& lights) {
-  const std::vector<Place> places = places_of(cells_);
+ private:
+  Round ask_chunk(std::size_t first, int round, const std::vector<Answer>& answers) {
+    const std::size_t count = std::min(cells_at_once, places_.size() - first);
+    std::array<Vec3, cells_at_once> origins{};
+    Vec3Lanes normals{};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Place& place = places_[first + i];
+      const Facet& facet = facets_[place.facet];
+      const auto [u, v] = point_of(corners_of(place, sides_[place.facet]), first + i, round);
+      origins[i] = ray_origin(facet.point(u, v), facet.normal);
+      normals.x[i] = facet.normal.x;
+      normals.y[i] = facet.normal.y;
+      normals.z[i] = facet.normal.z;
+    }
+    Round result;
+    for (std::size_t l = 0; l < lights_.size(); ++l) {
+      const std::uint16_t facing = bits_of_lanes(dot(lights_[l], normals) > 0);
+      if (facing == 0) continue;
+      RayPacket packet{};
+      for (std::size_t i = 0; i < cells_at_once; ++i) packet.set(i, origins[i], lights_[l]);
+      scene_.occluded(packet, facing, Coherence::coherent);
+      const std::uint16_t blocked = bits_of_lanes(packet.tfar < 0);
+      const auto bit = static_cast<std::uint16_t>(1U << (l % lanes));
+      for (std::size_t i = 0; i < count; ++i) {
+        if ((facing >> i & 1U) == 0) continue;
+        const std::size_t at = (first + i) * groups_ + l / lanes;
+        const bool visible = (blocked >> i & 1U) == 0;
+        (visible ? seen_ : hidden_)[at] |= bit;
+        ++result.rays;
+        if ((answers[at].known & bit) == 0) continue;
+        ++result.certain;
+        result.contradicted += visible == ((answers[at].visible & bit) != 0) ? 0 : 1;
+      }
+    }
+    return result;
+  }
+
+  const std::vector<Facet>& facets_;
+  const LightSet& lights_;
+  const PeriodicScene& scene_;
+  std::vector<Place> places_;
+  std::vector<std::array<std::uint32_t, 3>> corners_;
+  std::size_t corner_count_;
+  const std::vector<int>& sides_;
+  std::size_t groups_;
+  std::vector<std::uint16_t> seen_;    // [cell][group]: some point sees the light
+  std::vector<std::uint16_t> hidden_;  // some point does not
+};
+
+// Rays are enough once fewer than this share of them contradict what was certain.
+constexpr double rare = 2e-6;
+
+}  // namespace
+
+VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights,
+                                 const PeriodicScene& scene, int most_rays)
+    : VisibilityTable(facets, lights) {
+  const std::vector<Answer> nothing = std::move(answers_);
+  std::vector<int> sides;
+  std::uint32_t count = 0;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    sides.push_back(cells_a_side(facets[f]));
+    cells_[f] = {count, static_cast<std::uint16_t>(sides[f])};
+    count += static_cast<std::uint32_t>(sides[f] * sides[f]);
+  }
+  std::vector<Place> places = places_of(cells_);
   std::unordered_map<std::uint64_t, std::uint32_t> numbers;
   std::vector<std::array<std::uint32_t, 3>> corners(places.size());
   for (std::size_t c = 0; c < places.size(); ++c) {
-    const Facet& facet = facets[places[c].facet];
-    const auto at = corners_of(places[c], cells_[places[c].facet].side);
+    const auto at = corners_of(places[c], sides[places[c].facet]);
     for (int k = 0; k < 3; ++k) {
+      const Vec3 p = facets[places[c].facet].point(at[k][0], at[k][1]);
       const auto next = static_cast<std::uint32_t>(numbers.size());
-      corners[c][k] =
-          numbers.try_emplace(key_of(facet.point(at[k][0], at[k][1])), next).first->second;
+      corners[c][k] = numbers.try_emplace(key_of(p), next).first->second;
     }
   }
-  std::vector<std::uint16_t> some_see(numbers.size() * groups_);
-  std::vector<std::uint16_t> some_do_not(numbers.size() * groups_);
-  for (std::size_t c = 0; c < places.size(); ++c) {
-    for (const std::uint32_t corner : corners[c]) {
-      for (std::size_t g = 0; g < groups_; ++g) {
-        some_see[corner * groups_ + g] |= answers_[c * groups_ + g].visible;
-        some_do_not[corner * groups_ + g] |= answers_[c * groups_ + g].known;
-      }
-    }
+  Inquiry inquiry(facets, lights, scene, std::move(places), std::move(corners), numbers.size(),
+                  sides);
+  answers_.assign(count * groups_, {});
+  for (int round = 0; round < most_rays; ++round) {
+    const Inquiry::Round asked = inquiry.ask(round, answers_);
+    rays_ += asked.rays;
+    if (round + 1 < least_rays) continue;
+    contradicted_ = asked.certain > 0 ? static_cast<double>(asked.contradicted) /
+                                            static_cast<double>(asked.certain)
+                                      : 0;
+    inquiry.agree(answers_);
+    if (round + 1 > least_rays && contradicted_ < rare) break;
   }
-  for (std::size_t c = 0; c < places.size(); ++c) {
-    for (std::size_t g = 0; g < groups_; ++g) {
-      Answer& answer = answers_[c * groups_ + g];
-      std::uint16_t seen = 0;
-      std::uint16_t hidden = 0;
-      for (const std::uint32_t corner : corners[c]) {
-        seen |= some_see[corner * groups_ + g];
-        hidden |= some_do_not[corner * groups_ + g];
-      }
-      const auto visible = static_cast<std::uint16_t>(answer.visible & ~hidden);
-      const auto blocked = static_cast<std::uint16_t>(answer.known & ~seen);
-      answer.visible = visible;
-      answer.known = static_cast<std::uint16_t>(visible | blocked | ~lights.used_lanes(g));
-    }
-  }
+  answers_.insert(answers_.end(), nothing.begin(), nothing.end());
 }
 
 std::size_t VisibilityTable::cell(std::uint32_t facet, float u, float v) const {

@@ -2,7 +2,8 @@
 //
 // Big facets are cut into cells. Of each cell a few points look towards each light; where they and
 // the cells around agree, the answer is nearly certain, and a path that meets the cell need not
-// trace. The few answers that are wrong are made good by `PathBlock`, which checks one in 256.
+// trace. More points are asked until hardly any of them contradicts what was certain before. The
+// few answers that are wrong still are made good by `PathBlock`, which checks one in 256.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +25,10 @@ class VisibilityTable {
 
   /// Knows nothing: every query is traced.
   VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights);
-  /// @param rays_a_cell  1 to 4, towards each light.
+  static constexpr int least_rays = 2;  ///< of each cell towards each light
+  /// @param most_rays  of each cell towards each light, at least `least_rays`.
   VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights,
-                  const PeriodicScene& scene, int rays_a_cell);
+                  const PeriodicScene& scene, int most_rays);
 
   /// How many cells a table would have.
   static std::size_t cells_of(const std::vector<Facet>& facets);
@@ -38,7 +40,10 @@ class VisibilityTable {
   /// On the other side nothing is known.
   const Answer* unknown() const { return &answers_[answers_.size() - groups_]; }
 
+  /// What asking took.
   std::int64_t rays() const { return rays_; }
+  /// Share of the last rays that contradicted what was certain before them.
+  double contradicted() const { return contradicted_; }
   std::size_t bytes() const;
 
  private:
@@ -47,14 +52,12 @@ class VisibilityTable {
     std::uint16_t side = 1;  // cells a side: side * side in all
   };
   std::size_t cell(std::uint32_t facet, float u, float v) const;
-  void ask(const std::vector<Facet>& facets, const LightSet& lights, const PeriodicScene& scene,
-           int rays_a_cell);
-  void agree(const std::vector<Facet>& facets, const LightSet& lights);
 
   std::size_t groups_;
   std::vector<Cells> cells_;     // a facet
   std::vector<Answer> answers_;  // [cell][group]; the last row knows nothing
   std::int64_t rays_ = 0;
+  double contradicted_ = 0;
 };
 
 }  // namespace weft

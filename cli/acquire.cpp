@@ -137,6 +137,12 @@ void report(const AcquisitionReport& result, const Options& options, Session& se
   if (result.views_kept > 0)
     session.say(fmt::format("{} views were there already", result.views_kept));
   if (missed > 0) session.say(fmt::format("{:.2f} % of rays met nothing: add a floor", missed));
+  if (s.negative > 0) {
+    session.say(
+        fmt::format("{} values were left below zero by the correction of a wrong answer of "
+                    "the visibility table, and are stored as 0",
+                    s.negative));
+  }
   if (s.invalid > 0)
     session.say(fmt::format("{} paths ended on a density that is not a number", s.invalid));
   if (s.trapped > 0) session.say(fmt::format("{} paths never left the structure", s.trapped));

@@ -27,6 +27,7 @@ struct Session {
 
 // Each adds one subcommand; its callback does the work when it was chosen.
 void add_acquire(CLI::App& app, Session& session);
+void add_bench(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
 void add_compress(CLI::App& app, Session& session);
 void add_demo(CLI::App& app, Session& session);

@@ -108,7 +108,7 @@ int run(int argc, char** argv) {
       threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, session.threads);
   });
   for (const auto add : {add_acquire, add_compress, add_render, add_preview, add_extract,
-                         add_compare, add_info, add_list, add_validate, add_demo}) {
+                         add_compare, add_info, add_list, add_validate, add_bench, add_demo}) {
     add(app, session);
   }
   append_to_help(app, global_options(app));

@@ -1,0 +1,53 @@
+// How fast acquisition is, against Embree alone and against the plain way.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "acquisition/acquire.h"
+#include "btf/progress.h"
+
+namespace weft {
+
+/// What one structure's acquisition takes. Times are of the wall, with all threads.
+struct AcquisitionBench {
+  std::string structure;
+  double full_dataset_seconds = 0;  ///< from the structure to the written dataset
+  double samples_per_second = 0;    ///< texel x pair x spp
+  double rays_per_second = 0;       ///< really traced
+  TraceStatistics statistics;
+  /// What Embree alone needs for every primary, bounce and visibility query that the estimator asks
+  /// (traced, or answered by the table), each kind in its fastest form of call.
+  double embree_seconds = 0;
+  double roofline_ratio = 0;  ///< embree_seconds / full_dataset_seconds
+  std::string primary_form;   ///< the fastest form of each kind
+  std::string bounce_form;
+  std::string first_shadow_form;
+  std::string later_shadow_form;
+  /// Time x mean square error of the plain way (`trace_pair_naively`) over ours, for a pair.
+  double speedup_equal_rmse = 0;
+  double naive_seconds_a_pair = 0;  ///< at `naive_spp`
+  double naive_rmse = 0;            ///< over texels and some pairs, 1/sr
+  double rmse = 0;                  ///< ours, of the same pairs
+};
+
+inline constexpr int naive_bench_spp = 16;
+
+/// Traces the whole dataset into `folder`, which is removed again, then measures the rest on parts.
+AcquisitionBench bench_acquisition(const std::string& name, const Mesostructure& mesostructure,
+                                   const AcquisitionSettings& settings,
+                                   const std::filesystem::path& folder, Progress& progress);
+
+/// One row of the table of costs: seconds of tracing with one size multiplied.
+struct AcquisitionCost {
+  std::string size;  ///< texels (a side's square), spp, views or lights
+  int factor = 1;
+  double seconds = 0;
+};
+
+/// How the time grows with each size: 1, 2 and 4 times a quarter of what `settings` say.
+std::vector<AcquisitionCost> acquisition_costs(const Mesostructure& mesostructure,
+                                               const AcquisitionSettings& settings);
+
+}  // namespace weft
