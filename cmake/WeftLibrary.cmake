@@ -9,4 +9,8 @@ function(weft_library folder)
   target_include_directories(weft_${folder} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/weft>)
   target_link_libraries(weft_${folder} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:weft_compiler>)
+  # Headers pass vectors of sixteen floats through inline functions: how depends on the CPU, so that a program that
+  # uses an installed library is compiled for the CPU that the library was.
+  target_compile_options(weft_${folder} INTERFACE $<INSTALL_INTERFACE:-march=${WEFT_ARCH}>
+                                                  $<INSTALL_INTERFACE:-Wno-psabi>)
 endfunction()

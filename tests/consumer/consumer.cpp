@@ -1,5 +1,5 @@
-// Makes a flat Lambertian BTF, writes it, opens it as a codec's and asks it, through what is
-// installed only.
+// Makes a flat Lambertian BTF, writes it, opens it as a codec's and asks it, and traces another,
+// through what is installed only.
 
 #include <cmath>
 #include <cstdio>
@@ -9,6 +9,7 @@
 #include "btf/btf_file.h"
 #include "btf/direction.h"
 #include "codecs/representation.h"
+#include "tracing.h"
 
 namespace {
 
@@ -37,5 +38,6 @@ int main() {
   const float found = opened->evaluate({0.3F, 0.7F}, light, view, 0).y;
   const double expected = albedo / std::numbers::pi * light.z;
   std::printf("%s says %.6f, expected %.6f\n", opened->codec().c_str(), found, expected);
-  return std::abs(found - expected) < 1e-5 ? 0 : 1;
+  const bool traces = trace_flat_checker() && evaluate_lanes();
+  return std::abs(found - expected) < 1e-5 && traces ? 0 : 1;
 }
