@@ -23,6 +23,13 @@ Bsdf read_bsdf(const Settings& settings) {
     const auto ior = static_cast<float>(settings.number("ior", 1.5, 1.0001, 4));
     return Bsdf::plastic(unit_colour("albedo", Rgb(0.5F)), ior, alpha(0.2));
   }
+  for (const std::string key : {"eta", "k"}) {
+    if (!settings.has("f0") || !settings.has(key)) continue;
+    throw bad_input(settings.where(key),
+                    "a conductor has either f0 or eta and k, and here it has f0 and " + key,
+                    "f0 may be the mesostructure's own: give type = 'conductor' too, and no "
+                    "default is taken");
+  }
   if (settings.has("f0")) return Bsdf::conductor_f0(unit_colour("f0", Rgb(1)), alpha(0.2));
   // Gold, of Johnson and Christy 1972, at 630, 532 and 465 nm.
   const Rgb eta = settings.rgb("eta", Rgb(0.18F, 0.55F, 1.34F));

@@ -77,6 +77,19 @@ TEST_CASE("a smooth conductor reflects as Fresnel says at normal incidence") {
         Approx(expected).epsilon(0.01));
 }
 
+TEST_CASE("a conductor has f0 or eta and k, and is gold where it has neither") {
+  const auto read = [](const std::string& keys) {
+    return read_bsdf(Settings::from_text("type = 'conductor'\nalpha = 0.5\n" + keys, "a.toml"));
+  };
+  CHECK_THROWS_WITH(read("f0 = 0.9\neta = 1.5\n"),
+                    Catch::Contains("a.toml:4:1") && Catch::Contains("either f0 or eta and k"));
+  CHECK_THROWS_WITH(read("k = 2\nf0 = 0.9\n"), Catch::Contains("a.toml:3:1"));
+  const Direction up(0, 0, 1);
+  const Rgb gold = read("").evaluate(up, up);
+  CHECK(gold == read("eta = [0.18, 0.55, 1.34]\nk = [3.4, 2.2, 1.88]\n").evaluate(up, up));
+  CHECK(gold.x > 2 * gold.z);
+}
+
 TEST_CASE("sampling and evaluation agree with a plain integral") {
   for (const Bsdf& bsdf : {Bsdf::conductor({0.2F, 0.2F, 0.2F}, {3, 3, 3}, 0.4F),
                            Bsdf::plastic(Rgb(0.3F), 1.5F, 0.3F), Bsdf::lambert(Rgb(0.6F))}) {
