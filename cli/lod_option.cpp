@@ -2,6 +2,7 @@
 
 #include "cli/lod_option.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -18,6 +19,18 @@ std::optional<float> parse_lod(const std::string& text) {
     throw bad_input("--lod", "found '" + text + "', expected 'auto' or a level of at least 0");
   }
   return lod;
+}
+
+bool has_levels(const Scene& scene) {
+  return std::ranges::any_of(scene.materials, [](const SceneMaterial& material) {
+    return material.appearance->has_lod();
+  });
+}
+
+void check_levels(std::optional<float> lod, bool levels) {
+  if (levels || !lod || *lod <= 0) return;
+  throw bad_input("--lod", "asks for a level above 0, and no material of the scene has levels",
+                  "a raw BTF has them; without them, write 0 or auto");
 }
 
 }  // namespace weft::cli

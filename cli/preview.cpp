@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -77,6 +78,15 @@ std::vector<PreviewPane> open_panes(const PreviewArguments& arguments) {
   return panes;
 }
 
+/// The level to draw. One pane with levels is enough: beside it stands what has none.
+std::optional<float> lod_of(const PreviewArguments& arguments,
+                            const std::vector<PreviewPane>& panes) {
+  const std::optional<float> lod = parse_lod(arguments.lod);
+  check_levels(lod, std::ranges::any_of(
+                        panes, [](const PreviewPane& pane) { return has_levels(pane.scene); }));
+  return lod;
+}
+
 void tell_about_light(const Scene& scene, const Session& session) {
   warn_where_dark(scene, session);
   if (scene.environments.empty()) return;
@@ -87,9 +97,9 @@ void tell_about_light(const Scene& scene, const Session& session) {
 
 void preview_headless(const PreviewArguments& arguments, Session& session) {
   const std::vector<PreviewPane> panes = open_panes(arguments);
-  tell_about_light(panes.front().scene, session);
-  const HeadlessOptions options{parse_lod(arguments.lod),
+  const HeadlessOptions options{lod_of(arguments, panes),
                                 arguments.frames.value_or(timed_frames_by_default)};
+  tell_about_light(panes.front().scene, session);
   for (std::size_t i = 0; i < panes.size(); ++i) {
     const HeadlessPicture picture = weft::preview_headless(panes[i].scene, options);
     const std::filesystem::path path = picture_path(arguments.output, i, panes.size());
@@ -115,12 +125,12 @@ void preview_headless(const PreviewArguments& arguments, Session& session) {
 
 void preview_in_window(const PreviewArguments& arguments, Session& session) {
   std::vector<PreviewPane> panes = open_panes(arguments);
+  const std::optional<float> lod = lod_of(arguments, panes);
   tell_about_light(panes.front().scene, session);
   std::vector<std::string> titles;
   for (const PreviewPane& pane : panes) titles.push_back(pane.title);
-  const WindowResult result = preview_window(
-      std::move(panes),
-      {parse_lod(arguments.lod), arguments.frames.value_or(0), arguments.screenshot});
+  const WindowResult result =
+      preview_window(std::move(panes), {lod, arguments.frames.value_or(0), arguments.screenshot});
   session.measured["gpu"] = result.renderer;
   session.measured["frames"] = result.frames;
   for (std::size_t i = 0; i < titles.size(); ++i) {
@@ -173,11 +183,11 @@ void add_preview(CLI::App& app, Session& session) {
   command->add_option("--size", a->size, "Pixels; the scene's camera says otherwise")
       ->type_name("WxH");
   command
-      ->add_option(
-          "--lod", a->lod,
-          "Level of detail: 0 the finest texels, or auto: log2 of each pixel's footprint in texels")
+      ->add_option("--lod", a->lod,
+                   "Level of detail: log2 of a width in texels, 0 the finest; or auto: each "
+                   "pixel's footprint")
       ->capture_default_str()
-      ->type_name("0|auto");
+      ->type_name("auto|X");
   command
       ->add_option(
           "--frames", a->frames,

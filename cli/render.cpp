@@ -117,6 +117,7 @@ void run(Options& options, Session& session) {
   if (!options.variance.empty()) check_image_path(options.variance);
   const Scene scene =
       read_scene(options.scene, open_datasets(), btf_paths(options.btfs), options.overrides);
+  check_levels(options.settings.lod, has_levels(scene));
   warn_where_dark(scene, session);
   Progress progress("render", session.quiet || session.json);
   const RenderResult result = render(scene, options.settings, progress);
