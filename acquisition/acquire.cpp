@@ -134,11 +134,11 @@ AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
   // What is refused is refused before the folder is made, and a tracer costs more than a look.
   std::unique_ptr<const ViewTracer> tracer;
   if (!missing.empty()) tracer.reset(new ViewTracer(tracer_for(mesostructure, settings, header)));
+  const std::size_t at_once = views_at_once(settings, header.lights.size());
   BtfWriter writer(folder, header);
   std::mutex mutex;
   progress.start(static_cast<std::int64_t>(missing.size()), "views", "rays");
   // Views side by side, so that one is written while another is traced.
-  const std::size_t at_once = views_at_once(settings, header.lights.size());
   for_each_limited(missing.size(), at_once, [&](std::size_t i) {
     const std::size_t v = missing[i];
     if (writer.has_view(v)) {  // another run has written it meanwhile

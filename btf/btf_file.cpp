@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -53,6 +54,18 @@ Error other_settings(const fs::path& folder, const std::string& file, const std:
                    "choose another folder, or remove this one");
 }
 
+// A codec's folder keeps its own description: with both in it, nobody could say what it holds.
+void check_place(const fs::path& folder) {
+  if (folder.empty()) throw bad_input("dataset", "its folder has no name", "expected NAME.btf");
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw bad_input(folder.string(), "is a file; a dataset is a folder", "choose another name");
+  }
+  if (fs::exists(folder / "codec.json")) {
+    throw bad_input(folder.string(), "holds a compressed dataset, as its codec.json says",
+                    "choose another folder, or remove this one");
+  }
+}
+
 // Whether there is any view. Throws where one is of other settings.
 bool check_views(const fs::path& folder, const BtfHeader& header) {
   bool any = false;
@@ -85,12 +98,26 @@ std::string view_file_name(std::size_t view) {
 }
 
 BtfWriter::BtfWriter(fs::path folder, BtfHeader header)
-    : folder_(std::move(folder)), header_(std::move(header)) {
+    : folder_(std::move(folder)),
+      header_(std::move(header)),
+      exceptions_(std::uncaught_exceptions()) {
+  check_place(folder_);
+  made_folder_ = !fs::exists(folder_);
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw failed(folder_.string(), "cannot be created: " + error.message());
   remove_abandoned(folder_);
   if (!check_views(folder_, header_)) claim(folder_, header_);
+}
+
+BtfWriter::~BtfWriter() {
+  if (!made_folder_ || std::uncaught_exceptions() == exceptions_) return;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+    if (entry.path().filename() != unfinished) return;
+  }
+  fs::remove(folder_ / unfinished, ignored);
+  fs::remove(folder_, ignored);
 }
 
 fs::path BtfWriter::view_path(std::size_t view) const {
@@ -103,11 +130,14 @@ bool BtfWriter::has_view(std::size_t view) const {
 
 void BtfWriter::write_view(std::size_t view, const ViewData& data) {
   check_storable(view, data.values, header_.width, header_.height, header_.pixel_type);
+  std::error_code ignored;                   // told by what follows
+  fs::create_directories(folder_, ignored);  // another writer that failed may have removed it
   const ViewFileHeader file{header_.width, header_.height, header_.pixel_type, header_.provenance};
   write_view_file(view_path(view), file, header_.views[view], header_.lights.directions(), data);
 }
 
 std::vector<std::size_t> missing_views(const fs::path& folder, const BtfHeader& header) {
+  check_place(folder);
   if (fs::is_directory(folder)) check_views(folder, header);
   std::vector<std::size_t> missing;
   for (std::size_t v = 0; v < header.views.size(); ++v) {
@@ -151,6 +181,10 @@ BtfHeader read_btf_header(const fs::path& folder) {
   const fs::path path = folder / "btf.json";
   if (!fs::is_directory(folder))
     throw bad_input(folder.string(), "is not a BTF dataset (a folder)");
+  if (!fs::exists(path) && fs::exists(folder / "codec.json")) {
+    throw bad_input(folder.string(), "is compressed already: it holds codec.json and no btf.json",
+                    "name the raw BTF that it was made of");
+  }
   if (!fs::exists(path)) {
     throw bad_input(path.string(), "is missing",
                     "an unfinished acquisition has none: run it again to continue");

@@ -30,7 +30,8 @@ struct BtfHeader {
 };
 
 /// Views of which `folder` has no file yet, ascending; all where there is no such folder.
-/// @throws Error  where it holds views of other settings.
+/// @throws Error  bad_input where it holds views of other settings or a compressed dataset, or is a
+/// file.
 std::vector<std::size_t> missing_views(const std::filesystem::path& folder,
                                        const BtfHeader& header);
 
@@ -46,8 +47,13 @@ class BtfWriter {
   /// Creates the folder, and `unfinished.json` in it, which names the settings before the first
   /// view does. Views that are there already, whole and of the same settings, are kept
   /// (`has_view`), so that an interrupted run continues.
-  /// @throws Error  where the folder holds another dataset, or cannot be written.
+  /// @throws Error  where the folder holds another dataset, raw or compressed, is a file, or cannot
+  /// be written.
   BtfWriter(std::filesystem::path folder, BtfHeader header);
+  /// Where an exception ends it, a folder that it made goes again, unless a view is in it.
+  ~BtfWriter();
+  BtfWriter(const BtfWriter&) = delete;
+  BtfWriter& operator=(const BtfWriter&) = delete;
 
   bool has_view(std::size_t view) const;
 
@@ -65,6 +71,8 @@ class BtfWriter {
 
   std::filesystem::path folder_;
   BtfHeader header_;
+  int exceptions_;  ///< under way when it was made
+  bool made_folder_ = false;
 };
 
 /// Path of `btf.json`'s view file: "view_000.exr", at least three digits.

@@ -41,14 +41,21 @@ struct Options {
   bool finish = false;
 };
 
-int whole_number(const std::string& option, const std::string& text, int least, int most) {
+/// @param or_else  what may stand there instead, as the message says it.
+int whole_number(const std::string& option, const std::string& text, int least, int most,
+                 const std::string& or_else = "") {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < least || value > most) {
-    throw bad_input(
-        option, fmt::format("is \"{}\"; expected a whole number from {} to {}", text, least, most));
+    throw bad_input(option, fmt::format("is \"{}\"; expected a whole number from {} to {}{}", text,
+                                        least, most, or_else));
   }
   return value;
+}
+
+int bounces(const std::string& text) {
+  if (text == "unlimited") return TraceSettings::unlimited;
+  return whole_number("--max-bounces", text, 0, 4096, ", or unlimited");
 }
 
 AcquisitionSettings settings_of(const Options& options, const Session& session) {
@@ -63,9 +70,7 @@ AcquisitionSettings settings_of(const Options& options, const Session& session) 
   if (options.spp < 1)
     throw bad_input("--spp", fmt::format("is {}; expected at least 1", options.spp));
   settings.trace.spp = options.spp;
-  settings.trace.max_bounces = options.max_bounces == "unlimited"
-                                   ? TraceSettings::unlimited
-                                   : whole_number("--max-bounces", options.max_bounces, 0, 4096);
+  settings.trace.max_bounces = bounces(options.max_bounces);
   settings.trace.seed = session.seed;
   settings.views = options.views.empty() ? options.directions : options.views;
   settings.lights = options.lights.empty() ? options.directions : options.lights;
@@ -179,6 +184,8 @@ void finish(const Mesostructure& mesostructure, const AcquisitionSettings& setti
 }
 
 void run(const Options& options, Session& session) {
+  if (options.output.empty())
+    throw bad_input("--output", "is empty; expected the folder of a dataset, NAME.btf");
   const AcquisitionSettings settings = settings_of(options, session);
   const bool whole = options.shard.empty();
   const Shard shard = whole ? Shard{} : shard_of(options.shard);

@@ -127,6 +127,44 @@ TEST_CASE("a folder is refused to other settings before the first view is there"
                                  "view_003.exr", "view_004.exr"});
 }
 
+TEST_CASE("a dataset takes no place that holds something else") {
+  const TemporaryFolder folder;
+  const BtfHeader header = header_of(random_btf(PixelType::half));
+  const std::filesystem::path codec = folder.path / "a.cmf";
+  std::filesystem::create_directory(codec);
+  std::ofstream(codec / "codec.json") << "{}";
+  std::ofstream(folder.path / "file") << "text";
+  CHECK_THROWS_WITH(BtfWriter(codec, header), Catch::Contains("codec.json"));
+  CHECK_THROWS_WITH(missing_views(codec, header), Catch::Contains("codec.json"));
+  CHECK(names_in(codec) == std::vector<std::string>{"codec.json"});
+  CHECK_THROWS_WITH(BtfWriter(folder.path / "file", header), Catch::Contains("is a file"));
+  CHECK_THROWS_WITH(BtfWriter("", header), Catch::Contains("no name"));
+}
+
+TEST_CASE("a writer that fails removes the folder that it made, unless a view is in it") {
+  const TemporaryFolder folder;
+  const BtfHeader header = header_of(random_btf(PixelType::half));
+  const std::filesystem::path path = folder.path / "a.btf";
+  const std::vector<float> good(3 * 6 * 8, 0.25F);
+  const std::vector<float> bright(3 * 6 * 8, 1e6F);
+  const auto fail = [&](bool after_a_view) {
+    BtfWriter writer(path, header);
+    if (after_a_view) writer.write_view(1, {.values = good});
+    writer.write_view(0, {.values = bright});
+  };
+  CHECK_THROWS(fail(false));
+  CHECK_FALSE(std::filesystem::exists(path));
+  std::filesystem::create_directory(path);
+  CHECK_THROWS(fail(false));
+  CHECK(std::filesystem::exists(path));  // somebody else's
+  std::filesystem::remove_all(path);
+  CHECK_THROWS(fail(true));
+  CHECK(missing_views(path, header) == std::vector<std::size_t>{0, 2, 3, 4});
+  std::filesystem::remove_all(path);
+  { const BtfWriter idle(path, header); }
+  CHECK(std::filesystem::exists(path / "unfinished.json"));
+}
+
 TEST_CASE("finishing names what is missing and makes nothing") {
   const TemporaryFolder folder;
   const BtfHeader header = header_of(random_btf(PixelType::half));
@@ -204,9 +242,10 @@ TEST_CASE("a view that cannot be written is named, not its temporary file") {
   const TemporaryFolder folder;
   BtfWriter writer(folder.path / "a.btf", header_of(random_btf(PixelType::half)));
   std::filesystem::remove_all(folder.path / "a.btf");
+  std::ofstream(folder.path / "a.btf") << "a file, which no folder can replace";
   try {
     writer.write_view(2, {.values = std::vector<float>(3 * 6 * 8, 1.0F)});
-    FAIL("written to a folder that is not there");
+    FAIL("written into a file");
   } catch (const Error& error) {
     CHECK_THAT(error.what(), Catch::Contains("view_002.exr") && !Catch::Contains(".part"));
   }
