@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "acquisition/mesostructures/plane.h"
 #include "btf/error.h"
@@ -82,10 +83,26 @@ std::vector<Bsdf> read_materials(const Settings& settings, const MesostructureTy
   return materials;
 }
 
-float highest(const TriangleMesh& mesh) {
-  float top = mesh.positions.front().z;
-  for (const Vec3& p : mesh.positions) top = std::max(top, p.z);
-  return top;
+/// Lowest and highest z of a mesh.
+std::pair<float, float> heights_of(const TriangleMesh& mesh) {
+  const auto [low, high] = std::ranges::minmax_element(mesh.positions, {}, &Vec3::z);
+  return {low->z, high->z};
+}
+
+/// Rays start outside and meet the structure wherever the plane is; below all of it, the plane is a
+/// mistake: what is seen slides by more than it is deep.
+float read_reference_height(const Settings& settings, const TriangleMesh& mesh) {
+  const auto [low, high] = heights_of(mesh);
+  const auto height = static_cast<float>(settings.number("reference_height", high, -100, 100));
+  constexpr float rounding = 1e-4F;
+  if (height < low - rounding) {
+    throw bad_input(settings.where("reference_height"),
+                    fmt::format("'reference_height' is {}, below the structure: its lowest point "
+                                "is at {:.4g}, its highest at {:.4g}",
+                                height, low, high),
+                    "in tiles; leave it out for the highest point");
+  }
+  return height;
 }
 
 }  // namespace
@@ -102,8 +119,7 @@ Mesostructure read_mesostructure(const std::filesystem::path& path,
   if (settings.has("floor")) add_floor(result.mesh, settings.table("floor"));
   result.materials = read_materials(settings, type, result.mesh.material_names);
   result.tile_size = static_cast<float>(settings.number("tile_size", 1, 1e-6, 1e6));
-  result.reference_height =
-      static_cast<float>(settings.number("reference_height", highest(result.mesh), -100, 100));
+  result.reference_height = read_reference_height(settings, result.mesh);
   settings.finish();
   result.settings = settings.canonical_json();
   return result;

@@ -51,11 +51,15 @@ void list_mesostructures(Session& session) {
   const std::string shared =
       "type                  one of those below\n"
       "tile_size = 1         world units a tile; all else is in tiles\n"
-      "reference_height      of the BTF plane; default: the highest point\n"
+      "reference_height      of the BTF plane, not below the structure; default: the highest "
+      "point\n"
       "offset = [0, 0]       shifts the content, in tiles\n"
       "smooth = false        smooth shading normals; false: the triangles' own\n"
       "floor = { height = 0, material = \"floor\" }   adds a plane\n"
-      "[materials.NAME]      type = \"lambert\" | \"conductor\" | \"plastic\" and its parameters";
+      "[materials.NAME]      type = \"lambert\" | \"conductor\" | \"plastic\" and its parameters:\n"
+      "    lambert           albedo = 0.5\n"
+      "    conductor         f0, or eta and k (default: gold's); alpha = 0.2\n"
+      "    plastic           albedo = 0.5, ior = 1.5, alpha = 0.2";
   for (const std::string& line : lines_of(shared)) session.say("    " + line);
   for (const MesostructureType& type : mesostructure_types()) {
     auto entry = show(session, type.name, type.summary, type.parameters);

@@ -95,6 +95,11 @@ std::vector<Finding> check_files(const fs::path& folder, const nlohmann::json& j
 std::vector<Finding> check(const fs::path& folder, std::size_t& decoded) {
   const fs::path raw = folder / "btf.json";
   const fs::path json = fs::exists(raw) ? raw : folder / "codec.json";
+  if (!fs::exists(json)) {
+    return {{1, folder.string() +
+                    ": has neither btf.json (of a raw BTF; an unfinished acquisition has none yet) "
+                    "nor codec.json (of a compressed one)"}};
+  }
   std::vector<Finding> findings;
   try {
     findings = check_files(folder, nlohmann::json::parse(read_text(json)));
@@ -124,7 +129,8 @@ void validate(const fs::path& folder, Session& session) {
   if (!findings.empty()) session.exit_code = difference;
   session.say(findings.empty()
                   ? fmt::format("{}: whole; {} values decoded", folder.string(), decoded)
-                  : fmt::format("{}: {} findings", folder.string(), findings.size()));
+                  : fmt::format("{}: {} finding{}", folder.string(), findings.size(),
+                                findings.size() == 1 ? "" : "s"));
 }
 
 }  // namespace

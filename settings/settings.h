@@ -53,6 +53,8 @@ class Settings {
   Rgb rgb(const std::string& key, const Rgb& fallback) const;
   /// A path, relative to the file it stands in; one from an override, to the working folder.
   std::filesystem::path path(const std::string& key) const;
+  /// The same of a file or folder that is there. @throws Error naming the line and the path.
+  std::filesystem::path existing_path(const std::string& key) const;
 
   /// A sub-table; empty settings where absent. Its `finish()` is called by this one's.
   Settings table(const std::string& key) const;

@@ -158,4 +158,13 @@ std::filesystem::path Settings::path(const std::string& key) const {
   return node_->paths[key] = from_command_line ? value : node_->document->folder / value;
 }
 
+std::filesystem::path Settings::existing_path(const std::string& key) const {
+  std::filesystem::path value = path(key);
+  if (!std::filesystem::exists(value)) {
+    throw bad_input(where(key),
+                    fmt::format("'{}' is {}: no such file", node_->full(key), value.string()));
+  }
+  return value;
+}
+
 }  // namespace weft

@@ -40,6 +40,7 @@ struct DirectionalLight {
 struct EnvironmentLight {
   Image radiance;
   float rotate = 0;
+  std::string name = "environment";  ///< as errors call it: its file
 };
 
 struct SceneMaterial {

@@ -74,7 +74,9 @@ void read_environment_light(const Settings& settings, Scene& scene) {
                     "an environment needs either `file` (a lat-long picture) or `radiance`");
   }
   if (settings.has("file")) {
-    light.radiance = as_rgb(read_image(settings.path("file"), Encoding::colour));
+    const std::filesystem::path file = settings.existing_path("file");
+    light.name = file.string();
+    light.radiance = as_rgb(read_image(file, Encoding::colour));
     const auto scale = static_cast<float>(settings.number("scale", 1, 0, 1e12));
     for (float& value : light.radiance.values) value *= scale;
   } else {

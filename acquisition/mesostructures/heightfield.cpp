@@ -35,7 +35,7 @@ void require_finite(const Image& image, const std::filesystem::path& file) {
 }
 
 TriangleMesh build(const Settings& settings) {
-  const std::filesystem::path file = settings.path("file");
+  const std::filesystem::path file = settings.existing_path("file");
   const double height = settings.number("height", 0.1, -10, 10);
   const auto levels = static_cast<int>(settings.integer("subdivide", 0, 0, 6));
   const Image image = read_image(file, Encoding::linear);

@@ -54,7 +54,7 @@ void require_tile_sized(const PolygonMesh& mesh, const std::string& file) {
 }
 
 TriangleMesh build(const Settings& settings) {
-  const std::filesystem::path file = settings.path("file");
+  const std::filesystem::path file = settings.existing_path("file");
   const bool y_up = settings.choice("up", {"z", "y"}) == "y";
   const bool fit = settings.flag("fit", false);
   const auto scale = static_cast<float>(settings.number("scale", 1, 1e-9, 1e9));

@@ -173,8 +173,13 @@ TEST_CASE("mistakes in a file are named with their line") {
   CHECK_THAT(read("height = 1\n"), Contains("'type' is missing"));
   CHECK_THAT(read("type = 'mesh'\n"), Contains("'file' is missing"));
   CHECK_THAT(read("type = 'mesh'\nfile = 'gone.obj'\n"),
-             Contains("gone.obj") && Contains("No such file"));
-  CHECK_THAT(read("type = 'heightfield'\nfile = 'gone.png'\n"), Contains("gone.png"));
+             Contains("a.toml:2:1") && Contains("gone.obj") && Contains("no such file"));
+  CHECK_THAT(read("type = 'heightfield'\nfile = 'gone.png'\n"),
+             Contains("a.toml:2:1") && Contains("gone.png"));
+  CHECK_THAT(read("type = 'rings'\nreference_height = -0.01\n"),
+             Contains("a.toml:2:1") && Contains("lowest point is at 0,"));
+  CHECK_THAT(read("type = 'rings'\n[materials.rings]\neta = 1.5\n"),
+             Contains("a.toml:3:1") && Contains("either f0 or eta and k"));
   CHECK_THAT(read("type = 'tissue'\nwarp = 3\n"), Contains("a.toml:2:1") && Contains("even"));
   write_file(folder, "points.obj", "v 0 0 0\n");
   CHECK_THAT(read("type = 'mesh'\nfile = 'points.obj'\n"), Contains("mesh has no faces"));

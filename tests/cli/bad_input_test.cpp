@@ -50,6 +50,12 @@ struct Mistakes {
     write_small_dataset(f / "small.btf");
     fs::copy(f / "small.btf", f / "cut.btf");
     fs::resize_file(f / "cut.btf" / "view_002.exr", 300);
+    fs::create_directory(f / "fitted.cmf");
+    write(f / "fitted.cmf" / "codec.json", "{}");
+    write(f / "imageless.toml", "type = \"heightfield\"\nfile = \"none.png\"\n");
+    write(f / "mirror.toml",
+          "type = \"rings\"\nsegments = 8\nminor_segments = 8\n[materials.default]\ntype = "
+          "\"conductor\"\nalpha = 1e-4\n");
   }
 
   /// @param fragments  what the sentence must name.
@@ -86,16 +92,35 @@ TEST_CASE("acquire refuses bad mesostructures") {
   mistakes.refused(acquire("nan.toml"), {"nan.exr", "nan"});
   mistakes.refused(acquire("truncated.toml"), {"truncated.exr"});
   mistakes.refused(acquire("faceless.toml"), {"faceless.obj", "face"});
-  mistakes.refused(acquire("fileless.toml"), {"nothing.obj"});
+  mistakes.refused(acquire("fileless.toml"), {"fileless.toml:2:1", "nothing.obj"});
+  mistakes.refused(acquire("imageless.toml"), {"imageless.toml:2:1", "none.png"});
+  mistakes.refused(acquire("good.toml", {"--set", "reference_height=-0.5"}),
+                   {"reference_height", "-0.5", "lowest"});
+  // A highlight that no half holds.
+  mistakes.refused(acquire("mirror.toml", {"--max-bounces", "0"}), {"half"});
 }
 
 TEST_CASE("acquire refuses bad options") {
   const Mistakes mistakes;
   mistakes.refused(acquire("good.toml", {"--spp", "0"}), {"spp", "0"});
   mistakes.refused(acquire("good.toml", {"--max-bounces", "many"}), {"--max-bounces", "many"});
+  mistakes.refused(acquire("good.toml", {"--max-bounces", "inf"}),
+                   {"--max-bounces", "inf", "unlimited"});
   mistakes.refused(acquire("good.toml", {"--views", "ubo18"}), {"ubo18", "ubo81"});
   mistakes.refused(acquire("good.toml", {"--pixel", "byte"}), {"--pixel", "byte", "half"});
   mistakes.refused(acquire("good.toml", {"--set", "hight=1"}), {"hight", "height"});
+}
+
+TEST_CASE("acquire refuses places where no dataset can be") {
+  const Mistakes mistakes;
+  const auto refused = [&](const std::string& place, const std::vector<std::string>& fragments) {
+    mistakes.refused(
+        {"acquire", "good.toml", "--texels", "4", "--directions", "regular:1x2", "-o", place},
+        fragments);
+  };
+  refused("fitted.cmf", {"fitted.cmf", "codec.json"});
+  refused("half.toml", {"half.toml", "file"});
+  refused("", {"--output", "empty"});
 }
 
 TEST_CASE("acquire refuses shards that are none") {
@@ -122,6 +147,7 @@ TEST_CASE("compress, info and extract refuse what is not a dataset") {
   mistakes.refused({"extract", "cut.btf", "--view", "0,0", "--light", "0,0", "-o", "a.exr"},
                    {"view_002.exr"});
   mistakes.refused({"compress", "nothing.btf", "-o", "out.cmf"}, {"nothing.btf"});
+  mistakes.refused({"compress", "fitted.cmf", "-o", "out.cmf"}, {"fitted.cmf", "already"});
   mistakes.refused({"compress", "cut.btf", "-o", "out.cmf"}, {"view_002.exr"});
   mistakes.refused({"compress", "small.btf", "--codec", "cfm", "-o", "out.cmf"}, {"cfm", "cmf"});
   mistakes.refused({"compress", "small.btf", "-o", "out.cmf", "--set", "bit=8"}, {"bit", "bits"});

@@ -141,6 +141,15 @@ TEST_CASE("validate ends with 3 and names the file that was damaged") {
   CHECK_THAT(outcome.err, Contains("view_003.exr"));
 }
 
+TEST_CASE("validate ends with 3 and says what a dataset would have") {
+  const Dataset dataset;
+  fs::remove(dataset.folder.path / "small.btf" / "btf.json");
+  const Outcome outcome = dataset.run({"validate", "small.btf"});
+  CHECK(outcome.exit_code == 3);
+  CHECK_THAT(outcome.err, Contains("weft: 1: ") && Contains("btf.json") && Contains("codec.json"));
+  CHECK_THAT(outcome.out, Contains("1 finding\n"));
+}
+
 TEST_CASE("validate ends with 3 where the JSON is half a file") {
   const Dataset dataset;
   const fs::path json = dataset.folder.path / "small.btf" / "btf.json";

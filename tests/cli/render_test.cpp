@@ -76,6 +76,41 @@ TEST_CASE("render refuses what it cannot do in one sentence, and leaves no pictu
   CHECK_FALSE(std::filesystem::exists(folder.path / "out.exr"));
 }
 
+TEST_CASE("A level that nothing in the scene has is refused") {
+  const RenderFolder folder;
+  REQUIRE(run_weft({"compress", "small.btf", "-o", "small.cmf", "--set", "clustered=false"},
+                   folder.path)
+              .exit_code == 0);
+  const auto draw = [&](const std::vector<std::string>& command, const std::string& lod) {
+    std::vector<std::string> arguments = command;
+    for (const char* more : {"scene.toml", "-o", "out.exr", "--btf", "small.cmf", "--lod"})
+      arguments.emplace_back(more);
+    arguments.push_back(lod);
+    return run_weft(arguments, folder.path);
+  };
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"render", "--spp", "1"},
+        std::vector<std::string>{"preview", "--headless"}}) {
+    const Outcome outcome = draw(command, "1");
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Catch::Contains("--lod") && Catch::Contains("levels"));
+    CHECK_FALSE(std::filesystem::exists(folder.path / "out.exr"));
+  }
+  CHECK(draw({"render", "--spp", "1"}, "0").exit_code == 0);
+  CHECK(draw({"render", "--spp", "1"}, "auto").exit_code == 0);
+}
+
+TEST_CASE("An environment with a negative pixel is named") {
+  const RenderFolder folder;
+  weft::Image sky(2, 1);
+  sky.set_rgb(1, 0, {-1, 0, 0});
+  weft::write_image(folder.path / "sky.exr", sky, weft::Encoding::linear);
+  const Outcome outcome =
+      folder.render({"--set", "light=[{ type = 'environment', file = 'sky.exr' }]"});
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Catch::Contains("sky.exr: pixel x = 1, y = 0"));
+}
+
 TEST_CASE("A scene without light is warned of, but not with --quiet") {
   const RenderFolder folder;
   const std::vector<std::string> dark = {"--set", "light=[]", "--spp", "1", "--json"};

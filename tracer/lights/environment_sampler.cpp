@@ -43,7 +43,7 @@ EnvironmentSampler::EnvironmentSampler(const EnvironmentLight& light) : light_(l
       const double weight = mean(c);
       if (!std::isfinite(weight) || std::min({c.x, c.y, c.z}) < 0) {
         throw bad_input(
-            "environment",
+            light.name,
             fmt::format("pixel x = {}, y = {} is ({}, {}, {}), expected finite radiance "
                         "of at least 0",
                         x, y, c.x, c.y, c.z));

@@ -90,7 +90,7 @@ TriangleMesh make_torus(const Settings& settings) {
 }
 
 TriangleMesh make_file_mesh(const Settings& settings) {
-  TriangleMesh mesh = read_mesh(settings.path("file"));
+  TriangleMesh mesh = read_mesh(settings.existing_path("file"));
   complete_frames(mesh);
   return mesh;
 }
