@@ -35,7 +35,7 @@ struct Options {
   double error = 0;
   bool variance = false;
   std::optional<float> alpha;
-  std::size_t validate = 0;
+  int validate = 0;
   std::uint64_t memory = 0;
   std::string shard;
   bool finish = false;
@@ -77,6 +77,10 @@ AcquisitionSettings settings_of(const Options& options, const Session& session) 
   settings.pixel_type = options.pixel == "float" ? PixelType::float32 : PixelType::half;
   if (options.error < 0 || !std::isfinite(options.error))
     throw bad_input("--error", fmt::format("is {}; expected a number above 0", options.error));
+  if (options.alpha && !std::isfinite(*options.alpha))
+    throw bad_input("--alpha", fmt::format("is {}; expected a height in tiles", *options.alpha));
+  if (options.validate < 0)
+    throw bad_input("--validate", fmt::format("is {}; expected at least 0", options.validate));
   settings.trace.error = options.error;
   settings.trace.texel_errors = options.variance;
   settings.trace.cut_height = options.alpha;
@@ -200,8 +204,8 @@ void run(const Options& options, Session& session) {
          options, session);
   if (options.validate > 0) {
     Progress pairs("off-grid pairs", session.quiet || session.json);
-    const AcquisitionReport offgrid =
-        acquire_offgrid(mesostructure, settings, options.validate, options.output, pairs);
+    const AcquisitionReport offgrid = acquire_offgrid(
+        mesostructure, settings, static_cast<std::size_t>(options.validate), options.output, pairs);
     session.measured["offgrid_pairs"] = options.validate;
     session.measured["offgrid_seconds"] = offgrid.seconds;
     session.say(fmt::format("{}/offgrid: {} pairs, {:.1f} s", options.output, options.validate,
@@ -258,7 +262,13 @@ void add_acquire(CLI::App& app, Session& session) {
   command
       ->add_option("--memory", options->memory,
                    "Most memory, e.g. 4GiB: fewer views are traced at once; 0: as many as threads")
-      ->transform(CLI::AsSizeValue(false));
+      ->transform(CLI::AsSizeValue(false))
+      // Runs before the one above, which would take -1 for the largest number there is.
+      ->transform(CLI::Validator(
+          [](const std::string& text) {
+            return text.starts_with('-') ? "is " + text + "; expected 0 or more" : std::string();
+          },
+          ""));
   CLI::Option* shard = command->add_option(
       "--shard", options->shard,
       "I/N, 0 <= I < N: only the views v with v % N = I, and no btf.json; any number of shards may "

@@ -123,6 +123,27 @@ TEST_CASE("acquire refuses places where no dataset can be") {
   refused("", {"--output", "empty"});
 }
 
+TEST_CASE("acquire refuses errors, heights, pairs and memory that cannot be") {
+  const Mistakes mistakes;
+  const auto refused = [&](const std::vector<std::string>& more,
+                           const std::vector<std::string>& fragments) {
+    mistakes.refused(acquire("good.toml", more), fragments);
+  };
+  refused({"--error", "-0.01"}, {"--error", "-0.01", "expected"});
+  refused({"--error", "nan"}, {"--error", "nan"});
+  refused({"--error", "small"}, {"--error", "small"});
+  refused({"--error", "0.01", "--spp", "1"}, {"--spp", "1", "at least 2"});
+  refused({"--variance", "--spp", "1"}, {"--spp", "1", "at least 2"});
+  refused({"--alpha", "nan"}, {"--alpha", "nan", "height"});
+  refused({"--alpha", "high"}, {"--alpha", "high"});
+  refused({"--validate", "-1"}, {"--validate", "-1"});
+  refused({"--validate", "some"}, {"--validate", "some"});
+  refused({"--validate", "2", "--shard", "0/2"}, {"--validate", "--shard"});
+  refused({"--memory", "-1"}, {"--memory", "-1"});
+  refused({"--memory", "4 apples"}, {"--memory", "apples", "gib"});
+  refused({"--memory", "1MiB"}, {"--memory", "is 1 MiB", "at least", "MiB"});
+}
+
 TEST_CASE("acquire refuses shards that are none") {
   const Mistakes mistakes;
   const auto refused = [&](const std::string& shard, const std::vector<std::string>& fragments) {
