@@ -9,6 +9,7 @@ struct Outcome {
   int exit_code = -1;
   std::string out;
   std::string err;
+  long peak_kibibytes = 0;  ///< resident set at its largest
 };
 
 /// Runs `weft ARGUMENTS`; `folder` is where it runs. Arguments are passed as they are, no shell
