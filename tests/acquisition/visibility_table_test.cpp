@@ -48,7 +48,7 @@ Tally hold_against_rays(const TraceableStructure& structure, const LightSet& lig
   return tally;
 }
 
-// Wires of 0.002 tiles that stand on a plane: their shadows slip between the points that a cell
+// Wires of 0.0004 tiles that stand on a plane: their shadows slip between the points that a cell
 // asks.
 Mesostructure wires() {
   TriangleMesh mesh = test::flat(Rgb(1)).mesh;
@@ -62,10 +62,10 @@ Mesostructure wires() {
     mesh.triangles.push_back({first, first + 3, first + 2});
     mesh.materials.insert(mesh.materials.end(), {0, 0});
   };
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     const Vec3 foot(unit_float(hash_coordinates(i, 0)), unit_float(hash_coordinates(i, 1)), 0);
-    add_wall(foot, {0.002F, 0, 0});
-    add_wall(foot, {0, 0.002F, 0});
+    add_wall(foot, {0.0004F, 0, 0});
+    add_wall(foot, {0, 0.0004F, 0});
   }
   return test::structure(mesh, {Bsdf::lambert(Rgb(0.5F))}, 0.4F);
 }
@@ -210,7 +210,7 @@ TEST_CASE("tracing with the table agrees with tracing without, texel by texel an
   CHECK(squares / compared < 1.1);
 }
 
-TEST_CASE("where the table is often wrong, the mean is right all the same") {
+TEST_CASE("where the table is often wrong, the mean is right all the same", "[slow]") {
   const TraceSettings settings{.width = 16, .height = 16, .spp = 256, .max_bounces = 0, .seed = 2};
   const ViewTracer with = tracer_of(wires(), settings, true);
   const ViewTracer without = tracer_of(
@@ -238,7 +238,7 @@ TEST_CASE("where the table is often wrong, the mean is right all the same") {
   double variance = 0;
   for (const double d : differences) variance += (d - mean) * (d - mean) / (runs - 1) / runs;
   INFO(rate << " wrong; the mean is off by " << mean << " +- " << std::sqrt(variance));
-  CHECK(rate > 2e-3);
+  CHECK(rate > 1e-3);
   // Uncorrected, the mean would be off by about the rate.
   CHECK(std::sqrt(variance) < rate / 5);
   CHECK(statistics::t_test(differences, 0) > 1e-3);
