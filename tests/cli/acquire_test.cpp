@@ -108,7 +108,7 @@ TEST_CASE("a rerun keeps the pairs off the grid, and more of them begin with the
   CHECK(after["pairs"][1] == before["pairs"][1]);
 }
 
-TEST_CASE("--error reports the samples that were spent, and what stayed above it") {
+TEST_CASE("acquire --error reports the samples that were spent, and what stayed above it") {
   const Place place;
   const Outcome outcome =
       place.acquire({"--texels", "4", "--views", "regular:1x2", "--lights", "fibonacci:4", "--spp",
