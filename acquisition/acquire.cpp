@@ -1,10 +1,11 @@
 #include "acquisition/acquire.h"
 
 #include <fmt/core.h>
-#include <tbb/parallel_pipeline.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -107,14 +108,10 @@ std::size_t views_at_once(const AcquisitionSettings& settings, std::size_t light
 // Runs `body` on [0, count), at most `at_once` of them at a time.
 void for_each_limited(std::size_t count, std::size_t at_once,
                       const std::function<void(std::size_t)>& body) {
-  std::size_t next = 0;
-  const auto give = [&](tbb::flow_control& control) {
-    if (next == count) control.stop();
-    return next++;
-  };
-  tbb::parallel_pipeline(
-      at_once, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, give) &
-                   tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, body));
+  const bool all = at_once >= static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t step = all ? std::max<std::size_t>(count, 1) : at_once;
+  for (std::size_t first = 0; first < count; first += step)
+    tbb::parallel_for(first, std::min(first + step, count), body);
 }
 
 }  // namespace
