@@ -18,4 +18,14 @@ std::vector<Facet> facets_of(const TriangleMesh& mesh) {
   return facets;
 }
 
+Vec3 shading_normal(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v,
+                    const Vec3& facet_normal, bool behind, const Vec3& direction) {
+  if (mesh.normals.empty()) return facet_normal;
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vec3 normal =
+      (mesh.normals[a] * (1 - u - v) + mesh.normals[b] * u + mesh.normals[c] * v).normalized();
+  const Vec3 turned = behind ? -normal : normal;
+  return (turned ^ direction) < -1e-4F ? turned : facet_normal;
+}
+
 }  // namespace weft

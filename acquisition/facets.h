@@ -24,6 +24,13 @@ struct alignas(64) Facet {
 
 std::vector<Facet> facets_of(const TriangleMesh& mesh);
 
+/// The unit normal to shade with at (u, v) of a triangle that a ray of `direction` hits: the mesh's
+/// own, on the side of `facet_normal` (the one towards the viewer, `behind` where
+/// that is not the counter-clockwise one); the facet's where the mesh has
+/// none, or where its own faces away from the viewer and so has nothing to say.
+Vec3 shading_normal(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v,
+                    const Vec3& facet_normal, bool behind, const Vec3& direction);
+
 /// Where a ray that leaves `point` on the side of `normal` begins: off the surface by about 40
 /// roundings, and within the tile.
 inline Vec3 ray_origin(const Vec3& point, const Vec3& normal) {

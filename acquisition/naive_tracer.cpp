@@ -12,9 +12,6 @@ namespace weft {
 
 namespace {
 
-constexpr int most_bounces = 4096;
-constexpr float dim_throughput = 0.02F;
-
 // One path's random numbers, in the order in which they are asked for.
 class Numbers {
  public:
@@ -45,14 +42,18 @@ class PathWalk {
     Vec3 direction = -view_;
     Rgb throughput(1, 1, 1);
     Imath::V3d sum(0, 0, 0);
-    for (int bounce = 0; bounce <= std::min(settings_.max_bounces, most_bounces); ++bounce) {
+    for (int bounce = 0; bounce <= std::min(settings_.max_bounces, PathEnd::most_bounces);
+         ++bounce) {
       ++rays_;
       const RayHit hit = scene.intersect(origin, direction);
       if (!hit.hit()) break;
       const Facet& facet = structure_.facets[hit.primitive];
       if (facet.degenerate()) break;
-      const Vec3 facet_normal = (facet.normal ^ direction) > 0 ? -facet.normal : facet.normal;
-      const Frame frame = frame_around(shading_normal(hit, facet, facet_normal, direction));
+      const bool behind = (facet.normal ^ direction) > 0;
+      const Vec3 facet_normal = behind ? -facet.normal : facet.normal;
+      const Frame frame =
+          frame_around(shading_normal(structure_.mesostructure.mesh, hit.primitive, hit.u, hit.v,
+                                      facet_normal, behind, direction));
       const Bsdf& bsdf = structure_.mesostructure.materials[facet.material];
       const Direction towards_viewer = frame.to_local(-direction);
       origin = ray_origin(facet.point(hit.u, hit.v), facet_normal);
@@ -68,9 +69,9 @@ class PathWalk {
       if (!((direction ^ facet_normal) > 0)) break;
       throughput *= sample.weight;
       const float brightness = max_component(throughput);
-      if (brightness < dim_throughput) {
-        if (!(numbers.next() * dim_throughput < brightness)) break;
-        throughput *= dim_throughput / brightness;
+      if (brightness < PathEnd::dim) {
+        if (!(numbers.next() * PathEnd::dim < brightness)) break;
+        throughput *= PathEnd::dim / brightness;
       }
     }
     return sum;
@@ -79,18 +80,6 @@ class PathWalk {
   std::int64_t rays() const { return rays_; }
 
  private:
-  Vec3 shading_normal(const RayHit& hit, const Facet& facet, const Vec3& facet_normal,
-                      const Vec3& direction) const {
-    const TriangleMesh& mesh = structure_.mesostructure.mesh;
-    if (mesh.normals.empty()) return facet_normal;
-    const auto& [a, b, c] = mesh.triangles[hit.primitive];
-    Vec3 normal =
-        (mesh.normals[a] * (1 - hit.u - hit.v) + mesh.normals[b] * hit.u + mesh.normals[c] * hit.v)
-            .normalized();
-    if (facet_normal != facet.normal) normal = -normal;
-    return (normal ^ direction) < -1e-4F ? normal : facet_normal;
-  }
-
   const TraceableStructure& structure_;
   const TraceSettings& settings_;
   Direction view_;

@@ -11,10 +11,6 @@ namespace weft {
 
 namespace {
 
-// A path of a closed, white inside (a ray that slipped between touching surfaces) would never end.
-constexpr int most_bounces = 4096;
-// Paths dimmer than this are ended by Russian roulette; needed only where bounces are unlimited.
-constexpr float dim_throughput = 0.02F;
 // One certain answer in so many is checked.
 constexpr std::uint32_t check_every = 256;
 constexpr std::uint32_t most_samples = 64;     // of each texel in a wave
@@ -160,7 +156,7 @@ void PathBlock::flush(Coherence coherence) {
 }
 
 void PathBlock::follow_paths() {
-  const int most = std::min(tracer_.settings().max_bounces, most_bounces);
+  const int most = std::min(tracer_.settings().max_bounces, PathEnd::most_bounces);
   const std::optional<float> cut = tracer_.settings().cut_height;
   for (int bounce = 0; !next_.empty(); ++bounce) {
     std::swap(paths_, next_);
@@ -193,17 +189,9 @@ bool PathBlock::arrive(const Path& path, Vertex& vertex, Vec3& origin) const {
   if (facet.degenerate()) return false;
   const bool behind = (facet.normal ^ path.direction) > 0;
   vertex.facet_normal = behind ? -facet.normal : facet.normal;
-  vertex.normal = vertex.facet_normal;
-  const TriangleMesh& mesh = tracer_.mesostructure().mesh;
-  if (!mesh.normals.empty()) {
-    const auto& [a, b, c] = mesh.triangles[path.facet];
-    const Vec3 shading = (mesh.normals[a] * (1 - path.u - path.v) + mesh.normals[b] * path.u +
-                          mesh.normals[c] * path.v)
-                             .normalized();
-    // One that faces away from the viewer has nothing to say: the facet's own is used.
-    const Vec3 turned = behind ? -shading : shading;
-    if ((turned ^ path.direction) < -1e-4F) vertex.normal = turned;
-  }
+  vertex.frame = frame_around(shading_normal(tracer_.mesostructure().mesh, path.facet, path.u,
+                                             path.v, vertex.facet_normal, behind, path.direction));
+  vertex.view = vertex.frame.to_local(-path.direction);
   vertex.bsdf = &tracer_.mesostructure().materials[facet.material];
   vertex.answers =
       behind ? tracer_.visibility().unknown() : tracer_.visibility().at(path.facet, path.u, path.v);
@@ -214,8 +202,8 @@ bool PathBlock::arrive(const Path& path, Vertex& vertex, Vec3& origin) const {
 void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce) {
   const LightSet& lights = tracer_.lights();
   const bool lambert = vertex.bsdf->kind() == Bsdf::Kind::lambert;
-  const Frame frame = frame_around(vertex.normal);
-  const Bsdf::ViewTerms terms = vertex.bsdf->view_terms(frame.to_local(-path.direction));
+  const Frame& frame = vertex.frame;
+  const Bsdf::ViewTerms terms = vertex.bsdf->view_terms(vertex.view);
   const std::uint32_t checked =
       static_cast<std::uint32_t>(
           hash_coordinates(keys_[path.texel], check_pair(bounce), path.sample) >> 32) %
@@ -226,7 +214,7 @@ void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& orig
   for (std::size_t g = 0; g < groups_; ++g, wave += 3) {
     const Vec3Lanes& group = lights.group(g);
     Vec3Lanes local{};
-    local.z = dot(vertex.normal, group);
+    local.z = dot(frame.z, group);
     if (!lambert) {
       local.x = dot(frame.x, group);
       local.y = dot(frame.y, group);
@@ -289,25 +277,23 @@ void PathBlock::trace_connections(ShadowQueue& queue, Coherence coherence) {
 }
 
 bool PathBlock::scatter(Path& path, const Vertex& vertex, int bounce) {
-  const Frame frame = frame_around(vertex.normal);
   const auto [u, v] =
       bounce == 0 ? stratified(path, direction_pair(bounce)) : random(path, direction_pair(bounce));
   const bool lambert = vertex.bsdf->kind() == Bsdf::Kind::lambert;
-  const bool dim = max_component(path.throughput) < dim_throughput;
+  const bool dim = max_component(path.throughput) < PathEnd::dim;
   std::array<float, 2> others{0, 0};  // lobe, roulette
   if (!lambert || dim) {
     others = bounce == 0 ? stratified(path, lobe_pair(bounce)) : random(path, lobe_pair(bounce));
   }
-  const Bsdf::Sample sample =
-      vertex.bsdf->sample(frame.to_local(-path.direction), {others[0], u, v});
+  const Bsdf::Sample sample = vertex.bsdf->sample(vertex.view, {others[0], u, v});
   if (std::isnan(sample.pdf)) ++statistics_.invalid;
   if (!(sample.pdf > 0)) return false;
-  path.direction = frame.to_world(sample.light).normalized();
+  path.direction = vertex.frame.to_world(sample.light).normalized();
   if (!((path.direction ^ vertex.facet_normal) > 0)) return false;
   if (dim) {
     const float brightness = max_component(path.throughput);
-    if (!(others[1] * dim_throughput < brightness)) return false;
-    path.throughput *= dim_throughput / brightness;
+    if (!(others[1] * PathEnd::dim < brightness)) return false;
+    path.throughput *= PathEnd::dim / brightness;
   }
   path.throughput *= sample.weight;
   return max_component(path.throughput) > 0;

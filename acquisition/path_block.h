@@ -67,10 +67,11 @@ class PathBlock {
     std::uint32_t sample;
   };
 
-  // Where a path has arrived. `normal` is the shading normal on the viewer's side.
+  // Where a path has arrived; z of the frame is the shading normal on the viewer's side.
   struct Vertex {
     Vec3 facet_normal;  // on the viewer's side
-    Vec3 normal;
+    Frame frame;
+    Direction view;  // in the frame
     const Bsdf* bsdf = nullptr;
     const VisibilityTable::Answer* answers = nullptr;
   };

@@ -40,6 +40,14 @@ struct TraceSettings {
   std::uint64_t seed = 0;
 };
 
+/// Where paths end, in every estimator: a path of a closed, white inside (a ray that slipped
+/// between touching surfaces) would never end by itself, and those dimmer than `dim` are ended by
+/// Russian roulette, which only unlimited bounces need.
+struct PathEnd {
+  static constexpr int most_bounces = 4096;
+  static constexpr float dim = 0.02F;
+};
+
 /// What tracing cost, and what it met.
 struct TraceStatistics {
   std::int64_t texels = 0;  ///< of views
