@@ -131,6 +131,7 @@ AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
   // What is refused is refused before the folder is made, and a tracer costs more than a look.
   std::unique_ptr<const ViewTracer> tracer;
   if (!missing.empty()) tracer.reset(new ViewTracer(tracer_for(mesostructure, settings, header)));
+  if (tracer) report.statistics.table_rays = tracer->visibility().rays();
   const std::size_t at_once = views_at_once(settings, header.lights.size());
   BtfWriter writer(folder, header);
   std::mutex mutex;

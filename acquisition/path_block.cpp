@@ -162,10 +162,12 @@ void PathBlock::follow_paths() {
     std::swap(paths_, next_);
     next_.clear();
     const bool last = bounce >= most;
-    for (Path& path : paths_) {
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      if (i % lanes == 0) look_up(i);
+      Path& path = paths_[i];
       Vertex vertex;
       Vec3 origin;
-      if (!arrive(path, vertex, origin)) {
+      if (!arrive(path, answers_[i % lanes], vertex, origin)) {
         ++statistics_.degenerate;
         continue;
       }
@@ -184,7 +186,20 @@ void PathBlock::follow_paths() {
   trace_connections(later_connections_, Coherence::incoherent);
 }
 
-bool PathBlock::arrive(const Path& path, Vertex& vertex, Vec3& origin) const {
+void PathBlock::look_up(std::size_t first) {
+  const std::size_t count = std::min<std::size_t>(lanes, paths_.size() - first);
+  for (std::size_t i = 0; i < count; ++i)
+    __builtin_prefetch(&tracer_.facets()[paths_[first + i].facet]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Path& path = paths_[first + i];
+    answers_[i] = tracer_.visibility().at(path.facet, path.u, path.v);
+    __builtin_prefetch(answers_[i]);
+    __builtin_prefetch(answers_[i] + groups_ - 1);
+  }
+}
+
+bool PathBlock::arrive(const Path& path, const VisibilityTable::Answer* answers, Vertex& vertex,
+                       Vec3& origin) const {
   const Facet& facet = tracer_.facets()[path.facet];
   if (facet.degenerate()) return false;
   const bool behind = (facet.normal ^ path.direction) > 0;
@@ -193,8 +208,7 @@ bool PathBlock::arrive(const Path& path, Vertex& vertex, Vec3& origin) const {
                                              path.v, vertex.facet_normal, behind, path.direction));
   vertex.view = vertex.frame.to_local(-path.direction);
   vertex.bsdf = &tracer_.mesostructure().materials[facet.material];
-  vertex.answers =
-      behind ? tracer_.visibility().unknown() : tracer_.visibility().at(path.facet, path.u, path.v);
+  vertex.answers = behind ? tracer_.visibility().unknown() : answers;
   origin = ray_origin(facet.point(path.u, path.v), vertex.facet_normal);
   return true;
 }

@@ -93,8 +93,11 @@ class PathBlock {
   void send(const Path& path, const Vec3& origin, Coherence coherence);
   void flush(Coherence coherence);
   void follow_paths();
+  // Asks the table for sixteen paths from `first` on: what they wait for in memory comes at once.
+  void look_up(std::size_t first);
   // False for a triangle without an area.
-  bool arrive(const Path& path, Vertex& vertex, Vec3& origin) const;
+  bool arrive(const Path& path, const VisibilityTable::Answer* answers, Vertex& vertex,
+              Vec3& origin) const;
   // Adds the light that the path's vertex reflects directly, from every light.
   void connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce);
   void trace_connections(ShadowQueue& queue, Coherence coherence);
@@ -123,6 +126,7 @@ class PathBlock {
   std::vector<std::uint64_t> keys_;  // of each texel, for its random numbers
   std::vector<Path> paths_;
   std::vector<Path> next_;
+  std::array<const VisibilityTable::Answer*, lanes> answers_{};  // to paths, sixteen in a row
   std::array<Path, lanes> sent_;
   HitPacket packet_{};
   std::size_t sent_count_ = 0;

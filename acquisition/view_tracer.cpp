@@ -28,6 +28,7 @@ TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
   primary_rays += other.primary_rays;
   bounce_rays += other.bounce_rays;
   shadow_rays += other.shadow_rays;
+  table_rays += other.table_rays;
   visibility_queries += other.visibility_queries;
   answers_checked += other.answers_checked;
   wrong_answers += other.wrong_answers;

@@ -55,6 +55,7 @@ struct TraceStatistics {
   std::int64_t primary_rays = 0;
   std::int64_t bounce_rays = 0;
   std::int64_t shadow_rays = 0;
+  std::int64_t table_rays = 0;          ///< that made the visibility table, once a dataset
   std::int64_t visibility_queries = 0;  ///< asked by the estimator: traced, or answered by a table
   std::int64_t answers_checked = 0;     ///< certain answers that were traced all the same
   std::int64_t wrong_answers = 0;       ///< of those
@@ -70,7 +71,9 @@ struct TraceStatistics {
   std::int64_t degenerate = 0;  ///< hits on triangles without an area, where a path ends
   std::int64_t unsettled = 0;  ///< texels of views that had all samples and missed the target error
 
-  std::int64_t rays() const { return primary_rays + bounce_rays + shadow_rays + rays_traced_on; }
+  std::int64_t rays() const {
+    return primary_rays + bounce_rays + shadow_rays + table_rays + rays_traced_on;
+  }
   TraceStatistics& operator+=(const TraceStatistics& other);
 };
 

@@ -1,73 +1,96 @@
 #include "acquisition/visibility_table.h"
 
-#include <tbb/parallel_for.h>
-
-#include <array>
-#include <atomic>
-#include <cmath>
+#include <algorithm>
+#include <bit>
+#include <optional>
 #include <unordered_map>
-
-#include "btf/random.h"
 
 namespace weft {
 
 namespace {
 
-constexpr float cell_size = 1.0F / 96;  // tiles; longest edge of a cell
-constexpr int most_cells_a_side = 128;
-constexpr std::size_t cells_at_once = lanes;  // a packet of rays
+// Rays are enough once fewer than this share of all queries would contradict what was certain.
+constexpr double rare = 2e-6;
+constexpr std::size_t most_refined_bytes = 128'000'000;  // of answers; asking takes twice as much
 
-struct Place {
-  std::uint32_t facet;
-  std::uint16_t row;       // along u
-  std::uint16_t position;  // 2 * column along v, + 1 for the cell that points the other way
+constexpr std::array<Barycentric, 3> whole_facet{Barycentric{0, 0}, Barycentric{1, 0},
+                                                 Barycentric{0, 1}};
+
+// Numbers for places that cells share, in the order in which they are first met.
+class PlaceNumbers {
+ public:
+  std::uint32_t number(const Facet& facet, const Barycentric& at) {
+    const std::uint64_t key = place_key(facet.point(at[0], at[1]));
+    return numbers_.try_emplace(key, static_cast<std::uint32_t>(count_++)).first->second;
+  }
+  std::optional<std::uint32_t> find(const Facet& facet, const Barycentric& at) const {
+    const auto found = numbers_.find(place_key(facet.point(at[0], at[1])));
+    if (found == numbers_.end()) return std::nullopt;
+    return found->second;
+  }
+  // A place that belongs to one cell alone.
+  std::uint32_t unshared() { return static_cast<std::uint32_t>(count_++); }
+  std::size_t count() const { return count_; }
+
+ private:
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
+  std::size_t count_ = 0;
 };
 
-int cells_a_side(const Facet& facet) {
-  if (facet.degenerate()) return 1;
-  const float longest = std::max(
-      {facet.edge_u.length(), facet.edge_v.length(), (facet.edge_u - facet.edge_v).length()});
-  return std::clamp(static_cast<int>(std::ceil(longest / cell_size)), 1, most_cells_a_side);
-}
-
-using Barycentric = std::array<float, 2>;
-
-std::array<Barycentric, 3> corners_of(const Place& place, int side) {
-  const auto at = [&](int i, int j) {
-    return Barycentric{static_cast<float>(i) / static_cast<float>(side),
-                       static_cast<float>(j) / static_cast<float>(side)};
-  };
-  const int i = place.row;
-  const int j = place.position / 2;
-  if (place.position % 2 == 0) return {at(i, j), at(i + 1, j), at(i, j + 1)};
-  return {at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)};
-}
-
-// A random point of a cell; four in a row lie in its four quarters.
-Barycentric point_of(const std::array<Barycentric, 3>& corners, std::size_t cell, int round) {
-  const std::uint64_t bits = hash_coordinates(cell, round);
-  std::array<float, 2> at{unit_float(bits), unit_float(bits << 32)};
-  if (at[0] + at[1] > 1) at = {1 - at[0], 1 - at[1]};
-  std::array<float, 3> weight{1 - at[0] - at[1], at[0], at[1]};
-  // Quarters: the one in the middle is turned round, the others touch a corner.
-  const int quarter = round % 4;
-  for (int c = 0; c < 3; ++c) {
-    weight[c] = quarter == 0 ? (1 - weight[c]) / 2 : (weight[c] + (c == quarter - 1 ? 1 : 0)) / 2;
+CellCorners corners_of(const std::vector<Facet>& facets, const std::vector<Cell>& cells) {
+  PlaceNumbers numbers;
+  CellCorners corners;
+  corners.of_cell.reserve(cells.size());
+  for (const Cell& cell : cells) {
+    std::array<std::uint32_t, 3>& of_cell = corners.of_cell.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k)
+      of_cell[k] = numbers.number(facets[cell.facet], cell.corners[k]);
   }
-  Barycentric point{0, 0};
-  for (int c = 0; c < 3; ++c) {
-    for (int axis = 0; axis < 2; ++axis) point[axis] += weight[c] * corners[c][axis];
-  }
-  return point;
+  corners.count = numbers.count();
+  return corners;
 }
 
-// One number for what is the same place of the endless surface, to 1e-6 tiles.
-std::uint64_t key_of(const Vec3& p) {
-  constexpr double steps = 1e6;
-  const auto wrapped = [&](float x) {
-    return std::llround((x - std::floor(x)) * steps) % static_cast<std::int64_t>(steps);
-  };
-  return hash_coordinates(wrapped(p.x), wrapped(p.y), std::llround(p.z * steps));
+// Lights that face the cell, and of which it is not certain.
+std::uint16_t open_lights(const VisibilityEvidence& evidence, const VisibilityAnswer& answer) {
+  return static_cast<std::uint16_t>((evidence.seen | evidence.hidden) & ~answer.known);
+}
+
+// The points at which cells cut into side * side touch the rim of the whole.
+std::vector<Barycentric> rim_of(const Cell& cell, int side) {
+  std::vector<Barycentric> rim;
+  for (int i = 0; i < side; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(side);
+    rim.push_back(point_of(cell, t, 0));
+    rim.push_back(point_of(cell, 1 - t, t));
+    rim.push_back(point_of(cell, 0, 1 - t));
+  }
+  return rim;
+}
+
+// The corners of the cells that `whole` is cut into, in the order of `enter`.
+void add_corners(const Facet& facet, const Cell& whole, int side, PlaceNumbers& numbers,
+                 CellCorners& corners) {
+  std::vector<std::uint32_t> lattice(static_cast<std::size_t>(side + 1) * (side + 1));
+  const auto at = [&](int i, int j) -> std::uint32_t& { return lattice[i * (side + 1) + j]; };
+  for (int i = 0; i <= side; ++i) {
+    for (int j = 0; i + j <= side; ++j) {
+      const bool on_rim = i == 0 || j == 0 || i + j == side;
+      at(i, j) =
+          on_rim ? numbers.number(facet, point_of(whole, static_cast<float>(i) / side,
+                                                  static_cast<float>(j) / static_cast<float>(side)))
+                 : numbers.unshared();
+    }
+  }
+  for (int i = 0; i < side; ++i) {
+    for (int position = 0; position < 2 * (side - i) - 1; ++position) {
+      const int j = position / 2;
+      if (position % 2 == 0) {
+        corners.of_cell.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+      } else {
+        corners.of_cell.push_back({at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)});
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -82,203 +105,142 @@ std::size_t VisibilityTable::cells_of(const std::vector<Facet>& facets) {
 }
 
 VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights)
-    : groups_(lights.groups()), cells_(facets.size()), answers_(groups_) {
+    : groups_(lights.groups()), cells_(facets.size()), rows_(1), answers_(groups_) {
   for (std::size_t g = 0; g < groups_; ++g)
     answers_[g].known = static_cast<std::uint16_t>(~lights.used_lanes(g));
 }
-
-namespace {
-
-// Every cell of every facet, in the order of their numbers.
-template <typename Cells>
-std::vector<Place> places_of(const std::vector<Cells>& cells) {
-  std::vector<Place> places;
-  for (std::size_t f = 0; f < cells.size(); ++f) {
-    for (int i = 0; i < cells[f].side; ++i) {
-      for (int p = 0; p < 2 * (cells[f].side - i) - 1; ++p) {
-        places.push_back({static_cast<std::uint32_t>(f), static_cast<std::uint16_t>(i),
-                          static_cast<std::uint16_t>(p)});
-      }
-    }
-  }
-  return places;
-}
-
-// Asks round after round, and says what is certain so far.
-class Inquiry {
- public:
-  using Answer = VisibilityTable::Answer;
-
-  Inquiry(const std::vector<Facet>& facets, const LightSet& lights, const PeriodicScene& scene,
-          std::vector<Place> places, std::vector<std::array<std::uint32_t, 3>> corners,
-          std::size_t corner_count, const std::vector<int>& sides)
-      : facets_(facets),
-        lights_(lights),
-        scene_(scene),
-        places_(std::move(places)),
-        corners_(std::move(corners)),
-        corner_count_(corner_count),
-        sides_(sides),
-        groups_(lights.groups()),
-        seen_(places_.size() * groups_),
-        hidden_(seen_.size()) {}
-
-  struct Round {
-    std::int64_t rays = 0;
-    std::int64_t certain = 0;       // of them, those whose answer was certain before
-    std::int64_t contradicted = 0;  // of those
-  };
-
-  // One ray from each cell to each light in front of it.
-  Round ask(int round, const std::vector<Answer>& answers) {
-    std::atomic<std::int64_t> rays = 0;
-    std::atomic<std::int64_t> certain = 0;
-    std::atomic<std::int64_t> contradicted = 0;
-    const std::size_t chunks = (places_.size() + cells_at_once - 1) / cells_at_once;
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-      const Round r = ask_chunk(chunk * cells_at_once, round, answers);
-      rays += r.rays;
-      certain += r.certain;
-      contradicted += r.contradicted;
-    });
-    return {rays, certain, contradicted};
-  }
-
-  // Certain is what all points of a cell and of the cells that touch it agree on.
-  void agree(std::vector<Answer>& answers) const {
-    std::vector<std::uint16_t> some_see(corner_count_ * groups_);
-    std::vector<std::uint16_t> some_do_not(corner_count_ * groups_);
-    for (std::size_t c = 0; c < places_.size(); ++c) {
-      for (const std::uint32_t corner : corners_[c]) {
-        for (std::size_t g = 0; g < groups_; ++g) {
-          some_see[corner * groups_ + g] |= seen_[c * groups_ + g];
-          some_do_not[corner * groups_ + g] |= hidden_[c * groups_ + g];
-        }
-      }
-    }
-    for (std::size_t c = 0; c < places_.size(); ++c) {
-      for (std::size_t g = 0; g < groups_; ++g) {
-        unsigned seen = 0;
-        unsigned hidden = 0;
-        for (const std::uint32_t corner : corners_[c]) {
-          seen |= some_see[corner * groups_ + g];
-          hidden |= some_do_not[corner * groups_ + g];
-        }
-        const unsigned visible = seen_[c * groups_ + g] & ~hidden;
-        const unsigned blocked = hidden_[c * groups_ + g] & ~seen;
-        const unsigned unused = static_cast<std::uint16_t>(~lights_.used_lanes(g));
-        answers[c * groups_ + g] = {static_cast<std::uint16_t>(visible | blocked | unused),
-                                    static_cast<std::uint16_t>(visible)};
-      }
-    }
-  }
-
- private:
-  Round ask_chunk(std::size_t first, int round, const std::vector<Answer>& answers) {
-    const std::size_t count = std::min(cells_at_once, places_.size() - first);
-    std::array<Vec3, cells_at_once> origins{};
-    Vec3Lanes normals{};
-    for (std::size_t i = 0; i < count; ++i) {
-      const Place& place = places_[first + i];
-      const Facet& facet = facets_[place.facet];
-      const auto [u, v] = point_of(corners_of(place, sides_[place.facet]), first + i, round);
-      origins[i] = ray_origin(facet.point(u, v), facet.normal);
-      normals.x[i] = facet.normal.x;
-      normals.y[i] = facet.normal.y;
-      normals.z[i] = facet.normal.z;
-    }
-    Round result;
-    for (std::size_t l = 0; l < lights_.size(); ++l) {
-      const std::uint16_t facing = bits_of_lanes(dot(lights_[l], normals) > 0);
-      if (facing == 0) continue;
-      RayPacket packet{};
-      for (std::size_t i = 0; i < cells_at_once; ++i) packet.set(i, origins[i], lights_[l]);
-      scene_.occluded(packet, facing, Coherence::coherent);
-      const std::uint16_t blocked = bits_of_lanes(packet.tfar < 0);
-      const auto bit = static_cast<std::uint16_t>(1U << (l % lanes));
-      for (std::size_t i = 0; i < count; ++i) {
-        if ((facing >> i & 1U) == 0) continue;
-        const std::size_t at = (first + i) * groups_ + l / lanes;
-        const bool visible = (blocked >> i & 1U) == 0;
-        (visible ? seen_ : hidden_)[at] |= bit;
-        ++result.rays;
-        if ((answers[at].known & bit) == 0) continue;
-        ++result.certain;
-        result.contradicted += visible == ((answers[at].visible & bit) != 0) ? 0 : 1;
-      }
-    }
-    return result;
-  }
-
-  const std::vector<Facet>& facets_;
-  const LightSet& lights_;
-  const PeriodicScene& scene_;
-  std::vector<Place> places_;
-  std::vector<std::array<std::uint32_t, 3>> corners_;
-  std::size_t corner_count_;
-  const std::vector<int>& sides_;
-  std::size_t groups_;
-  std::vector<std::uint16_t> seen_;    // [cell][group]: some point sees the light
-  std::vector<std::uint16_t> hidden_;  // some point does not
-};
-
-// Rays are enough once fewer than this share of them contradict what was certain.
-constexpr double rare = 2e-6;
-
-}  // namespace
 
 VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights,
                                  const PeriodicScene& scene, int most_rays)
     : VisibilityTable(facets, lights) {
   const std::vector<Answer> nothing = std::move(answers_);
-  std::vector<int> sides;
-  std::uint32_t count = 0;
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    sides.push_back(cells_a_side(facets[f]));
-    cells_[f] = {count, static_cast<std::uint16_t>(sides[f])};
-    count += static_cast<std::uint32_t>(sides[f] * sides[f]);
+  std::vector<Cell> cells;
+  for (std::uint32_t f = 0; f < facets.size(); ++f) {
+    const int side = cells_a_side(facets[f]);
+    cells_[f] = {static_cast<std::uint32_t>(cells.size()), static_cast<std::uint32_t>(side)};
+    cut({f, whole_facet}, side, cells);
   }
-  std::vector<Place> places = places_of(cells_);
-  std::unordered_map<std::uint64_t, std::uint32_t> numbers;
-  std::vector<std::array<std::uint32_t, 3>> corners(places.size());
-  for (std::size_t c = 0; c < places.size(); ++c) {
-    const auto at = corners_of(places[c], sides[places[c].facet]);
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 p = facets[places[c].facet].point(at[k][0], at[k][1]);
-      const auto next = static_cast<std::uint32_t>(numbers.size());
-      corners[c][k] = numbers.try_emplace(key_of(p), next).first->second;
-    }
+  std::vector<Answer> answers;
+  std::vector<std::uint16_t> wanted;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    answers.insert(answers.end(), nothing.begin(), nothing.end());
+    for (std::size_t g = 0; g < groups_; ++g) wanted.push_back(lights.used_lanes(g));
   }
-  Inquiry inquiry(facets, lights, scene, std::move(places), std::move(corners), numbers.size(),
-                  sides);
-  answers_.assign(count * groups_, {});
-  for (int round = 0; round < most_rays; ++round) {
-    const Inquiry::Round asked = inquiry.ask(round, answers_);
-    rays_ += asked.rays;
-    if (round + 1 < least_rays) continue;
-    contradicted_ = asked.certain > 0 ? static_cast<double>(asked.contradicted) /
-                                            static_cast<double>(asked.certain)
-                                      : 0;
-    inquiry.agree(answers_);
-    if (round + 1 > least_rays && contradicted_ < rare) break;
+  CellCorners corners = corners_of(facets, cells);
+  VisibilityInquiry inquiry(facets, lights, scene, std::move(cells), std::move(corners),
+                            std::move(wanted));
+  ask(inquiry, most_rays, 1, answers);
+  if (most_rays >= rays_to_refine) {
+    refine(facets, lights, scene, inquiry, answers, most_rays);
+  } else {
+    rows_.resize(inquiry.cells().size());
+    for (std::size_t c = 0; c < rows_.size(); ++c) rows_[c].first = static_cast<std::uint32_t>(c);
+    answers_ = std::move(answers);
   }
   answers_.insert(answers_.end(), nothing.begin(), nothing.end());
 }
 
-std::size_t VisibilityTable::cell(std::uint32_t facet, float u, float v) const {
-  const Cells& cells = cells_[facet];
-  if (cells.side == 1) return cells.first;
-  const auto side = static_cast<float>(cells.side);
-  const int i = std::clamp(static_cast<int>(u * side), 0, cells.side - 1);
-  const int most = 2 * (cells.side - i) - 2;  // of the row's positions
-  const int j = static_cast<int>(v * side);
-  const bool other = u * side - static_cast<float>(i) + v * side - static_cast<float>(j) > 1;
-  const int position = std::clamp(2 * j + (other ? 1 : 0), 0, most);
-  return cells.first + static_cast<std::size_t>(i * (2 * cells.side - i) + position);
+void VisibilityTable::ask(VisibilityInquiry& inquiry, int most_rays, double share,
+                          std::vector<Answer>& answers) {
+  for (int round = 0; round < most_rays; ++round) {
+    const VisibilityInquiry::Round asked = inquiry.ask(round, answers);
+    rays_ += asked.rays;
+    if (round + 1 < least_rays) continue;
+    contradicted_ = asked.certain > 0 ? share * static_cast<double>(asked.contradicted) /
+                                            static_cast<double>(asked.certain)
+                                      : 0;
+    inquiry.agree(answers);
+    if (round + 1 > least_rays && contradicted_ < rare) break;
+  }
+}
+
+void VisibilityTable::refine(const std::vector<Facet>& facets, const LightSet& lights,
+                             const PeriodicScene& scene, const VisibilityInquiry& coarse,
+                             const std::vector<Answer>& answers, int most_rays) {
+  const std::vector<Cell>& cells = coarse.cells();
+  const std::vector<VisibilityEvidence>& evidence = coarse.evidence();
+  std::vector<int> open(cells.size());  // lights
+  double faced = 0;
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    open[i / groups_] += std::popcount(open_lights(evidence[i], answers[i]));
+    faced += std::popcount(unsigned{evidence[i].seen} | evidence[i].hidden);
+  }
+  // Where not all can be cut, those that are uncertain of most lights are.
+  std::vector<std::uint32_t> cut_cells;
+  for (std::uint32_t c = 0; c < cells.size(); ++c) {
+    if (open[c] > 0) cut_cells.push_back(c);
+  }
+  const std::size_t most = most_refined_bytes / (parts * groups_ * sizeof(Answer));
+  if (cut_cells.size() > most) {
+    std::ranges::stable_sort(cut_cells, [&](auto a, auto b) { return open[a] > open[b]; });
+    cut_cells.resize(most);
+    std::ranges::sort(cut_cells);
+  }
+
+  rows_.resize(cells.size());
+  std::uint32_t row = 0;
+  PlaceNumbers numbers;
+  CellCorners corners;
+  std::vector<Cell> fine;
+  std::vector<Answer> fine_answers;
+  std::vector<std::uint16_t> wanted;
+  std::vector<bool> touched(coarse.corners().count);
+  double asked = 0;
+  for (const std::uint32_t c : cut_cells) {
+    rows_[c].refined = 1;
+    cut(cells[c], refinement, fine);
+    add_corners(facets[cells[c].facet], cells[c], refinement, numbers, corners);
+    for (std::size_t part = 0; part < parts; ++part) {
+      for (std::size_t g = 0; g < groups_; ++g) {
+        const std::size_t at = c * groups_ + g;
+        wanted.push_back(open_lights(evidence[at], answers[at]));
+        fine_answers.push_back(answers[at]);
+      }
+    }
+    asked += open[c];
+    for (const std::uint32_t corner : coarse.corners().of_cell[c]) touched[corner] = true;
+  }
+  corners.count = numbers.count();
+  // What the cells around have seen, and what the cut ones are certain of, counts where they touch.
+  corners.evidence.resize(corners.count * groups_);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (std::ranges::none_of(coarse.corners().of_cell[c], [&](auto k) { return touched[k]; }))
+      continue;
+    for (const Barycentric& at : rim_of(cells[c], refinement)) {
+      const std::optional<std::uint32_t> corner = numbers.find(facets[cells[c].facet], at);
+      if (!corner) continue;
+      for (std::size_t g = 0; g < groups_; ++g) {
+        const VisibilityEvidence& own = evidence[c * groups_ + g];
+        const unsigned anew = rows_[c].refined ? open_lights(own, answers[c * groups_ + g]) : 0U;
+        corners.evidence[*corner * groups_ + g].seen |=
+            static_cast<std::uint16_t>(own.seen & ~anew);
+        corners.evidence[*corner * groups_ + g].hidden |=
+            static_cast<std::uint16_t>(own.hidden & ~anew);
+      }
+    }
+  }
+  if (!fine.empty()) {
+    VisibilityInquiry inquiry(facets, lights, scene, std::move(fine), std::move(corners),
+                              std::move(wanted));
+    ask(inquiry, most_rays, asked / faced, fine_answers);
+  }
+  std::size_t next_fine = 0;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    rows_[c].first = row;
+    const bool refined = rows_[c].refined != 0;
+    const std::vector<Answer>& from = refined ? fine_answers : answers;
+    const std::size_t count = (refined ? parts : 1) * groups_;
+    const auto first =
+        from.begin() + static_cast<std::ptrdiff_t>(refined ? next_fine : c * groups_);
+    answers_.insert(answers_.end(), first, first + static_cast<std::ptrdiff_t>(count));
+    row += refined ? parts : 1;
+    if (refined) next_fine += count;
+  }
 }
 
 std::size_t VisibilityTable::bytes() const {
-  return cells_.size() * sizeof(Cells) + answers_.size() * sizeof(Answer);
+  return cells_.size() * sizeof(Cells) + rows_.size() * sizeof(Rows) +
+         answers_.size() * sizeof(Answer);
 }
 
 }  // namespace weft

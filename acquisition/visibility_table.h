@@ -2,40 +2,42 @@
 //
 // Big facets are cut into cells. Of each cell a few points look towards each light; where they and
 // the cells around agree, the answer is nearly certain, and a path that meets the cell need not
-// trace. More points are asked until hardly any of them contradicts what was certain before. The
+// trace. More points are asked until hardly any of them contradicts what was certain before. Cells
+// that stay uncertain of some light, mostly where a shadow ends, are cut finer and asked again. The
 // few answers that are wrong still are made good by `PathBlock`, which checks one in 256.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "acquisition/facets.h"
-#include "acquisition/light_set.h"
-#include "acquisition/periodic_scene.h"
+#include "acquisition/visibility_inquiry.h"
 
 namespace weft {
 
 class VisibilityTable {
  public:
-  /// For one cell and sixteen lights, a bit each.
-  struct Answer {
-    std::uint16_t known = 0;    ///< lights that nearly certainly are seen, or are not
-    std::uint16_t visible = 0;  ///< of those, the seen ones
-  };
+  using Answer = VisibilityAnswer;
 
   /// Knows nothing: every query is traced.
   VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights);
   static constexpr int least_rays = 2;  ///< of each cell towards each light
+  /// From so many rays a cell and light on, uncertain cells are cut into 16 and asked again.
+  static constexpr int rays_to_refine = 32;
   /// @param most_rays  of each cell towards each light, at least `least_rays`.
   VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights,
                   const PeriodicScene& scene, int most_rays);
 
-  /// How many cells a table would have.
+  /// How many cells a table would have, before any is cut finer.
   static std::size_t cells_of(const std::vector<Facet>& facets);
 
   /// One answer a group of lights, for a point of a facet seen from its normal's side.
   const Answer* at(std::uint32_t facet, float u, float v) const {
-    return &answers_[cell(facet, u, v) * groups_];
+    const Cells& cells = cells_[facet];
+    Barycentric place{u, v};
+    const Rows& rows =
+        rows_[cells.first + (cells.side == 1 ? 0 : enter(static_cast<int>(cells.side), place))];
+    const std::size_t row = rows.first + (rows.refined ? enter(refinement, place) : 0);
+    return &answers_[row * groups_];
   }
   /// On the other side nothing is known.
   const Answer* unknown() const { return &answers_[answers_.size() - groups_]; }
@@ -47,15 +49,29 @@ class VisibilityTable {
   std::size_t bytes() const;
 
  private:
+  static constexpr int refinement = 4;  // cells a side that a cell is cut into
+  static constexpr std::size_t parts = refinement * refinement;
+
   struct Cells {
     std::uint32_t first = 0;
-    std::uint16_t side = 1;  // cells a side: side * side in all
+    std::uint32_t side = 1;  // cells a side: side * side in all
   };
-  std::size_t cell(std::uint32_t facet, float u, float v) const;
+  struct Rows {
+    std::uint32_t first : 31 = 0;
+    std::uint32_t refined : 1 = 0;  // then `parts` rows, in the order of `enter`
+  };
+
+  // Asks round after round, at most `most_rays`, until hardly any answer is contradicted; `share`
+  // is the share of all queries that what is asked stands for.
+  void ask(VisibilityInquiry& inquiry, int most_rays, double share, std::vector<Answer>& answers);
+  // Cuts those of `coarse` finer that are uncertain, and asks them again.
+  void refine(const std::vector<Facet>& facets, const LightSet& lights, const PeriodicScene& scene,
+              const VisibilityInquiry& coarse, const std::vector<Answer>& answers, int most_rays);
 
   std::size_t groups_;
   std::vector<Cells> cells_;     // a facet
-  std::vector<Answer> answers_;  // [cell][group]; the last row knows nothing
+  std::vector<Rows> rows_;       // a cell
+  std::vector<Answer> answers_;  // [row][group]; the last row knows nothing
   std::int64_t rays_ = 0;
   double contradicted_ = 0;
 };

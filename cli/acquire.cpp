@@ -119,6 +119,7 @@ void report(const AcquisitionReport& result, const Options& options, Session& se
                       {"primary_rays", s.primary_rays},
                       {"bounce_rays", s.bounce_rays},
                       {"shadow_rays", s.shadow_rays},
+                      {"table_rays", s.table_rays},
                       {"visibility_queries", s.visibility_queries},
                       {"answers_checked", s.answers_checked},
                       {"wrong_answers", s.wrong_answers},

@@ -50,6 +50,7 @@ nlohmann::ordered_json json_of(const AcquisitionBench& b) {
             {"later_shadow", b.later_shadow_form}}},
           {"visibility_queries", s.visibility_queries},
           {"shadow_rays", s.shadow_rays},
+          {"table_rays", s.table_rays},
           {"answers_checked", s.answers_checked},
           {"wrong_answers", s.wrong_answers},
           {"negative_means", s.negative},

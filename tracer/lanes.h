@@ -2,6 +2,10 @@
 // CPUs.
 #pragma once
 
+#ifdef __AVX512DQ__
+#include <immintrin.h>
+#endif
+
 #include <cmath>
 #include <cstdint>
 
@@ -79,9 +83,13 @@ inline IntLanes lanes_of_bits(std::uint16_t bits) {
 }
 /// Bit i set where lane i is true.
 inline std::uint16_t bits_of_lanes(const IntLanes& condition) {
+#ifdef __AVX512DQ__
+  return _mm512_movepi32_mask(reinterpret_cast<const __m512i&>(condition));
+#else
   unsigned bits = 0;
   for (int i = 0; i < lanes; ++i) bits |= (static_cast<unsigned>(condition[i]) & 1U) << i;
   return static_cast<std::uint16_t>(bits);
+#endif
 }
 
 }  // namespace weft
