@@ -22,8 +22,8 @@ inline float tile_fraction(float x) {
 class PeriodicScene {
  public:
   /// @param tile  in tile units: repeats with period 1 in x and y; may stick out of [0, 1]^2.
-  /// @throws Error  where it has no triangles, a position is not finite, or it is over 100 tiles
-  /// wide.
+  /// @throws Error  where it has no triangles, a position is not finite, or it
+  /// sticks out by more than 8 tiles.
   explicit PeriodicScene(const TriangleMesh& tile);
 
   float bottom() const { return bottom_; }

@@ -38,8 +38,9 @@ std::string part_name(std::size_t light) {
 Imf::Header part_header(const ViewFileHeader& file, const std::string& name) {
   Imf::Header header(file.width, file.height);
   // Sixteen lines are packed together. Line by line (ZIPS) takes three times as long, and a quarter
-  // more space.
+  // more space. Noise hardly packs: the quickest level takes half the time for 3 % more space.
   header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = 1;
   header.setName(name);
   header.setType(Imf::SCANLINEIMAGE);
   header.insert("weftProvenance", Imf::StringAttribute(file.provenance));
