@@ -110,7 +110,7 @@ std::vector<Direction> named_directions(const std::string& name) {
                   {67.5, 24, 7.5},
                   {75, 24, 0}});
   }
-  if (name.starts_with("file:")) return from_csv(name.substr(5));
+  if (name.starts_with("file:") && name.size() > 5) return from_csv(name.substr(5));
   if (name.starts_with("fibonacci:")) {
     if (const int n = count_of(std::string_view(name).substr(10)); n > 0) return fibonacci(n);
   }

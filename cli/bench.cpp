@@ -1,7 +1,9 @@
 // weft bench: how fast the parts are.
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +14,7 @@
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "cli/scene_folder.h"
+#include "settings/nearest_name.h"
 #include "study/acquisition_bench.h"
 
 namespace weft::cli {
@@ -27,8 +30,14 @@ const std::vector<std::pair<std::string, std::string>> structures = {
     {"rings", "rings.toml"},
     {"tissue", "tissue.toml"}};
 
+std::vector<std::string> names_of_structures() {
+  std::vector<std::string> names;
+  for (const auto& [name, file] : structures) names.push_back(name);
+  return names;
+}
+
 struct Options {
-  std::vector<std::string> structures;
+  std::string structures = fmt::format("{}", fmt::join(names_of_structures(), ","));
   std::string scenes;
   int texels = 64;
   int spp = 64;
@@ -64,9 +73,25 @@ std::string file_of(const std::string& name) {
   for (const auto& [known, file] : structures) {
     if (known == name) return file;
   }
-  throw bad_input("--structures", fmt::format("names \"{}\"; expected checker, checker_glossy, "
-                                              "rings or tissue",
-                                              name));
+  throw bad_input("--structures", fmt::format("there is no structure '{}'", name),
+                  name_hint(name, names_of_structures()));
+}
+
+/// The structures of a list "a,b,...", read before any is measured.
+std::vector<std::pair<std::string, Mesostructure>> read_structures(const std::string& list,
+                                                                   const fs::path& folder) {
+  std::vector<std::pair<std::string, Mesostructure>> result;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string name = list.substr(begin, end - begin);
+    const std::string file = file_of(name);
+    for (const auto& [earlier, mesostructure] : result) {
+      if (earlier == name) throw bad_input("--structures", fmt::format("names '{}' twice", name));
+    }
+    result.emplace_back(name, read_mesostructure(folder / file));
+    begin = end + 1;
+  }
+  return result;
 }
 
 void bench_acquire(const Options& options, Session& session) {
@@ -76,14 +101,11 @@ void bench_acquire(const Options& options, Session& session) {
   settings.trace.spp = options.spp;
   settings.trace.seed = session.seed;
   settings.views = settings.lights = options.directions;
-  std::vector<std::string> names = options.structures;
-  if (names.empty()) {
-    for (const auto& [name, file] : structures) names.push_back(name);
-  }
+  check_elevations(named_directions(options.directions), "direction");
+  const auto chosen = read_structures(options.structures, folder);
   session.say(fmt::format("{:15} {:>9} {:>12} {:>12} {:>9} {:>9} {:>9}", "", "seconds", "samples/s",
                           "rays/s", "roofline", "speedup", "RMSE"));
-  for (const std::string& name : names) {
-    const Mesostructure mesostructure = read_mesostructure(folder / file_of(name));
+  for (const auto& [name, mesostructure] : chosen) {
     Progress progress(name, session.quiet || session.json);
     const fs::path dataset = fs::temp_directory_path() / fmt::format("weft_bench_{}.btf", getpid());
     const AcquisitionBench b = bench_acquisition(name, mesostructure, settings, dataset, progress);
@@ -92,8 +114,7 @@ void bench_acquire(const Options& options, Session& session) {
                             b.full_dataset_seconds, b.samples_per_second, b.rays_per_second,
                             b.roofline_ratio, b.speedup_equal_rmse, b.rmse));
   }
-  const Mesostructure first = read_mesostructure(folder / file_of(names.front()));
-  for (const AcquisitionCost& cost : acquisition_costs(first, settings)) {
+  for (const AcquisitionCost& cost : acquisition_costs(chosen.front().second, settings)) {
     session.measured["costs"][cost.size].push_back(
         {{"factor", cost.factor}, {"seconds", cost.seconds}});
     session.say(fmt::format("{:8} x {}: {:.3f} s", cost.size, cost.factor, cost.seconds));
@@ -118,14 +139,14 @@ void add_bench(CLI::App& app, Session& session) {
                                             "size");
   acquire
       ->add_option("--structures", options->structures,
-                   "checker (Lambert), checker_glossy, rings, tissue; default: all")
-      ->delimiter(',');
+                   "Which to measure, separated by commas; checker is the Lambert one")
+      ->capture_default_str();
   acquire->add_option("--texels", options->texels, "Texels a side of the tile")
       ->capture_default_str()
-      ->check(at_least(1));
+      ->check(whole_number(16384, 1));
   acquire->add_option("--spp", options->spp, "Eye paths a view and texel")
       ->capture_default_str()
-      ->check(at_least(2));
+      ->check(whole_number(1 << 20, 2));
   acquire->add_option("--directions", options->directions, "Views and lights, as in acquire")
       ->capture_default_str();
   acquire->add_option(

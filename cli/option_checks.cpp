@@ -47,11 +47,11 @@ CLI::Validator above(double lower) {
   return {check, ""};
 }
 
-CLI::Validator whole_number(std::uint64_t largest) {
-  const auto check = [largest](const std::string& text) {
+CLI::Validator whole_number(std::uint64_t largest, std::uint64_t smallest) {
+  const auto check = [largest, smallest](const std::string& text) {
     const std::optional<std::uint64_t> value = parsed<std::uint64_t>(text);
-    return expected(value && *value <= largest, text,
-                    fmt::format("a whole number from 0 to {}", largest));
+    return expected(value && *value >= smallest && *value <= largest, text,
+                    fmt::format("a whole number from {} to {}", smallest, largest));
   };
   return {check, ""};
 }

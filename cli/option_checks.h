@@ -12,8 +12,8 @@ namespace weft::cli {
 CLI::Validator at_least(double lower);
 /// A finite number, lower < value.
 CLI::Validator above(double lower);
-/// A whole number in 0..largest.
-CLI::Validator whole_number(std::uint64_t largest);
+/// A whole number in smallest..largest.
+CLI::Validator whole_number(std::uint64_t largest, std::uint64_t smallest = 0);
 /// One of `names`; what is not is answered with the nearest, and all of them.
 CLI::Validator one_of(const std::vector<std::string>& names);
 

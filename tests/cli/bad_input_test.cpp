@@ -227,3 +227,27 @@ TEST_CASE("The demo refuses to compress with raw before it traces") {
   const Mistakes mistakes;
   mistakes.refused({"demo", "--codec", "raw", "-o", "demo"}, {"--codec", "raw", "cmf"});
 }
+
+TEST_CASE("bench refuses what it cannot measure, before it measures anything") {
+  const Mistakes mistakes;
+  const std::string scenes = std::string(WEFT_SOURCE_DIR) + "/scenes";
+  const auto refused = [&](const std::vector<std::string>& more,
+                           const std::vector<std::string>& fragments) {
+    std::vector<std::string> arguments = {"bench", "acquire", "--scenes", scenes};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    mistakes.refused(arguments, fragments);
+  };
+  const std::string all = "checker, checker_glossy, rings, tissue";
+  refused({"--structures", "rings,checkers"}, {"--structures", "'checkers'", "'checker'", all});
+  refused({"--structures", "good.toml"}, {"--structures", "'good.toml'", all});
+  refused({"--structures", ""}, {"--structures", "''", all});
+  refused({"--structures", "rings,rings"}, {"--structures", "'rings' twice"});
+  refused({"--texels", "-4"}, {"--texels", "'-4'", "from 1 to"});
+  refused({"--texels", "0"}, {"--texels", "'0'", "from 1 to"});
+  refused({"--spp", "1"}, {"--spp", "'1'", "from 2 to"});
+  refused({"--spp", "2.5"}, {"--spp", "'2.5'", "whole number"});
+  refused({"--directions", "ubo18"}, {"directions", "ubo18", "ubo81"});
+  refused({"--directions", "file:"}, {"directions", "file:", "ubo81"});
+  mistakes.refused({"bench", "acquire", "--scenes", "nothing"}, {"nothing", "folder"});
+  mistakes.refused({"bench", "acquire", "--scenes", "small.btf"}, {"checker_lambert.toml"});
+}
