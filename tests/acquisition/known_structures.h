@@ -105,8 +105,10 @@ inline Mesostructure rings(int n_major = 1024, int n_minor = 128) {
                    0.06F);
 }
 
-/// A hemispherical pit of radius `radius` below z = 0 in a flat rim; material 0 the pit, 1 the rim.
-inline TriangleMesh pit(double radius, int n) {
+/// A spherical pit of radius `radius` below z = 0 in a flat rim, open where the angle from the
+/// sphere's top is below `half_opening`: a hemisphere, or a flask where that is less; material 0
+/// the pit, 1 the rim.
+inline TriangleMesh pit(double radius, int n, double half_opening = std::numbers::pi / 2) {
   TriangleMesh mesh;
   mesh.material_names = {"pit", "rim"};
   const auto point = [&](double x, double y, double z) {
@@ -117,13 +119,13 @@ inline TriangleMesh pit(double radius, int n) {
   const int around = 4 * n;
   std::vector<std::vector<std::uint32_t>> rows;
   for (int j = 0; j <= n; ++j) {
-    const double theta = std::numbers::pi / 2 * j / n;  // 0 at the opening
+    const double angle = half_opening + (std::numbers::pi - half_opening) * j / n;  // from the top
     std::vector<std::uint32_t> row;
     for (int i = 0; i < around; ++i) {
       const double phi = 2 * std::numbers::pi * i / around;
-      row.push_back(point(0.5 + radius * std::cos(theta) * std::cos(phi),
-                          0.5 + radius * std::cos(theta) * std::sin(phi),
-                          -radius * std::sin(theta)));
+      row.push_back(point(0.5 + radius * std::sin(angle) * std::cos(phi),
+                          0.5 + radius * std::sin(angle) * std::sin(phi),
+                          radius * (std::cos(angle) - std::cos(half_opening))));
     }
     rows.push_back(row);
   }

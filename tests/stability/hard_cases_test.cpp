@@ -1,14 +1,18 @@
 // Structures, directions and materials at the edge of what floats can bear: finite, non-negative,
 // and what a formula or the plain tracer answers.
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <vector>
 
 #include "acquisition/mesostructure.h"
 #include "acquisition/naive_tracer.h"
 #include "acquisition/view_tracer.h"
 #include "tests/acquisition/known_structures.h"
+#include "tests/statistics.h"
 #include "tests/temporary_folder.h"
 
 using namespace weft;
@@ -77,6 +81,146 @@ Mesostructure painted(Mesostructure structure, float albedo) {
   return structure;
 }
 
+// Direct light of Lambert materials (green) by brute force: as many real copies of the tile as rays
+// towards this view and light can reach, on a regular grid of `fine` x `fine` points a texel.
+std::vector<double> direct_light(const Mesostructure& structure, const std::vector<double>& albedo,
+                                 const Direction& view, const Direction& light, int size,
+                                 int fine) {
+  const TriangleMesh& tile = structure.mesh;
+  const auto [lowest, highest] = std::ranges::minmax_element(tile.positions, {}, &Vec3::z);
+  const float low = lowest->z - 0.01F;
+  const float high = highest->z + 0.01F;
+  // Where the rays' boxes end, sideways.
+  const auto travel = [&](const Direction& d, int axis, float from, float to) {
+    return d[axis] / d.z * (to - from);
+  };
+  std::array<int, 2> first{};
+  std::array<int, 2> last{};
+  for (int axis = 0; axis < 2; ++axis) {
+    const float up = travel(view, axis, structure.reference_height, high);
+    const float down = travel(view, axis, structure.reference_height, low);
+    const float on = travel(light, axis, low, high);
+    first[axis] = static_cast<int>(std::floor(std::min(up, down) + std::min(0.0F, on))) - 1;
+    last[axis] = static_cast<int>(std::ceil(std::max(up, down) + std::max(0.0F, on))) + 1;
+  }
+  TriangleMesh patch;
+  for (int j = first[1]; j <= last[1]; ++j) {
+    for (int i = first[0]; i <= last[0]; ++i) {
+      const auto begin = static_cast<std::uint32_t>(patch.positions.size());
+      const Vec3 shift(static_cast<float>(i), static_cast<float>(j), 0);
+      for (const Vec3& p : tile.positions) patch.positions.push_back(p + shift);
+      for (const auto& t : tile.triangles)
+        patch.triangles.push_back({t[0] + begin, t[1] + begin, t[2] + begin});
+    }
+  }
+  const RayScene scene(patch);
+  std::vector<double> values(static_cast<std::size_t>(size) * size);
+  const int points = size * fine;
+  for (int y = 0; y < points; ++y) {
+    for (int x = 0; x < points; ++x) {
+      const Vec3 plane((static_cast<float>(x) + 0.5F) / static_cast<float>(points),
+                       1 - (static_cast<float>(y) + 0.5F) / static_cast<float>(points),
+                       structure.reference_height);
+      const Vec3 eye = plane + view * ((high - plane.z) / view.z);
+      const RayHit hit = scene.intersect(eye, -view, 0, 1e9F);
+      if (!hit.hit()) continue;
+      const auto& [a, b, c] = patch.triangles[hit.primitive];
+      Vec3 normal =
+          ((patch.positions[b] - patch.positions[a]) % (patch.positions[c] - patch.positions[a]))
+              .normalized();
+      if ((normal ^ view) < 0) normal = -normal;
+      const float cosine = normal ^ light;
+      if (cosine <= 0 || scene.occluded(eye - view * hit.distance + normal * 1e-5F, light, 0, 1e9F))
+        continue;
+      const std::size_t texel = static_cast<std::size_t>(y / fine) * size + x / fine;
+      values[texel] += albedo[tile.materials[hit.primitive % tile.triangles.size()]] * cosine /
+                       std::numbers::pi / (fine * fine);
+    }
+  }
+  return values;
+}
+
+// Texel by texel against the brute force: neither shares a line with the tracer above Embree.
+void agree_directly(const Mesostructure& structure, const std::vector<double>& albedo,
+                    const Direction& view, const Direction& light, double tolerance = 0.002) {
+  constexpr int size = 16;
+  const std::vector<double> expected = direct_light(structure, albedo, view, light, size, 32);
+  const TracedView traced = trace(structure, view, light, settings(size, 1024, 0));
+  double mean = 0;
+  double difference = 0;
+  double squares = 0;
+  for (std::size_t t = 0; t < expected.size(); ++t) {
+    const double d = traced.values[3 * t + 1] - expected[t];
+    mean += expected[t] / (size * size);
+    difference += d / (size * size);
+    squares += d * d / (size * size);
+  }
+  INFO("theta_view " << degrees(theta_of(view)) << ", theta_light " << degrees(theta_of(light))
+                     << ": relative difference of the means " << difference / mean
+                     << ", root mean square of the texels' " << std::sqrt(squares) / mean);
+  CHECK(mean > 0);
+  CHECK(std::abs(difference) < tolerance * mean);
+  CHECK(std::sqrt(squares) < 10 * tolerance * mean);
+}
+
+// A spherical pit of albedo rho, open in a share a of its sphere, in a black rim. What a point of a
+// sphere reflects falls evenly on all of it: so with opening area A and sphere's area S the part of
+// the tile's mean of k >= 1 reflections after the first is A^2 cos(theta_light) rho^2 / (pi S)
+// (rho (1 - a))^(k - 1).
+class Cavity {
+ public:
+  Cavity(double radius, double half_opening, float rho)
+      : rho_(rho),
+        kept_(rho * (1 + std::cos(half_opening)) / 2),
+        structure_(test::structure(test::pit(radius, rows, half_opening),
+                                   {Bsdf::lambert(Rgb(rho)), Bsdf::lambert(Rgb(0))}, 0)) {
+    const double r = radius * std::sin(half_opening);
+    const double opening = 0.5 * around * r * r * std::sin(2 * std::numbers::pi / around);
+    scale_ = opening * opening * light_.z * rho_ * rho_ /
+             (4 * std::numbers::pi * std::numbers::pi * radius * radius);
+  }
+
+  /// The tile's mean with up to `most` reflections after the first less that with up to `least`.
+  double expected(int most, int least) const {
+    return scale_ * (std::pow(kept_, least) - std::pow(kept_, most)) / (1 - kept_);
+  }
+
+  /// Held against the tracer, which draws the same paths for both.
+  void agrees(int most, int least, int runs, int spp) const {
+    constexpr int size = 16;
+    TraceSettings s = settings(size, spp, most);
+    const ViewTracer far(structure_, {light_}, s);
+    s.max_bounces = least;
+    const ViewTracer near(structure_, {light_}, s);
+    std::vector<double> differences;
+    double mean = 0;
+    for (int run = 0; run < runs; ++run) {
+      const TracedView a = far.trace(view_, run);
+      const TracedView b = near.trace(view_, run);
+      differences.push_back(0);
+      for (std::size_t i = 0; i < a.values.size(); i += 3)
+        differences.back() += (static_cast<double>(a.values[i]) - b.values[i]) / (size * size);
+      mean += differences.back() / runs;
+    }
+    double variance = 0;
+    for (const double d : differences) variance += std::pow(d - mean, 2) / (runs - 1) / runs;
+    INFO(least << " to " << most << " bounces: " << mean << " +- " << std::sqrt(variance)
+               << ", expected " << expected(most, least));
+    CHECK(std::sqrt(variance) < 0.06 * mean);
+    CHECK(statistics::t_test(differences, expected(most, least)) > 1e-3);
+  }
+
+ private:
+  static constexpr int rows = 32;
+  static constexpr int around = 4 * rows;
+  Direction view_ = at(25, 20);
+  Direction light_ = at(40, 80);
+  double rho_;
+  double kept_;
+  double scale_ = 0;
+  Mesostructure structure_;
+};
+
 }  // namespace
 
 TEST_CASE("theta of 89 degrees, of light and of view") {
@@ -84,6 +228,8 @@ TEST_CASE("theta of 89 degrees, of light and of view") {
   agree(test::checker(64), at(89, 30), at(40, 100), settings(16, 256, 4));
   agree(test::checker(64), at(40, 100), at(89, 30), settings(32, 1024, 4));
   agree(test::checker(64), at(89, 30), at(89, 75), settings(16, 1024, 4));
+  agree_directly(test::checker(16), {0.45, 0.2}, at(89, 30), at(40, 100));
+  agree_directly(test::checker(16), {0.45, 0.2}, at(40, 100), at(89, 30), 0.015);  // little is lit
 }
 
 TEST_CASE("a spike a hundred times as high as wide") {
@@ -99,6 +245,21 @@ TEST_CASE("a spike a hundred times as high as wide") {
   spike.reference_height = 1;
   agree(spike, at(60, 20), at(45, 200), settings(16, 256, 4));
   agree(spike, at(85, 20), at(75, 70), settings(16, 256, 4));
+  agree_directly(spike, {0.6}, at(60, 20), at(45, 200));
+  agree_directly(spike, {0.6}, at(85, 20), at(75, 70));
+}
+
+TEST_CASE("a fence without thickness, along which light and view pass for tiles") {
+  Mesostructure fence = test::flat(Rgb(0.6F));
+  TriangleMesh& mesh = fence.mesh;
+  for (const Vec3& p : {Vec3(0.5F, 0, 0), Vec3(0.5F, 1, 0), Vec3(0.5F, 1, 1), Vec3(0.5F, 0, 1)})
+    mesh.positions.push_back(p);
+  mesh.triangles.push_back({4, 5, 6});
+  mesh.triangles.push_back({4, 6, 7});
+  mesh.materials.insert(mesh.materials.end(), {0, 0});
+  fence.reference_height = 1;
+  agree_directly(fence, {0.6}, at(10, 90), at(75, 80));
+  agree_directly(fence, {0.6}, at(84, 96), at(40, 150));
 }
 
 TEST_CASE("coincident and degenerate triangles") {
@@ -117,6 +278,13 @@ TEST_CASE("coincident and degenerate triangles") {
   mesh.positions.insert(mesh.positions.end(), {{0.1F, 0.1F, 0}, {0.2F, 0.2F, 0}, {0.3F, 0.3F, 0}});
   mesh.triangles.push_back({4, 5, 6});
   mesh.materials.push_back(0);
+  const std::vector<Facet> facets = facets_of(mesh);
+  REQUIRE(facets.size() == 9);
+  for (std::size_t i = 0; i < 8; ++i) {  // the sliver's is what rounding leaves
+    INFO("triangle " << i);
+    CHECK(facets[i].degenerate() == (i >= 5));
+    CHECK(facets[i].normal.length() == Approx(i >= 5 ? 0 : 1));
+  }
   expect_flat(structure, 0.7, at(30, 10), at(50, 100));
   expect_flat(structure, 0.7, at(85, 10), at(85, 100));
 }
@@ -134,6 +302,28 @@ TEST_CASE("a mirror-like GGX, alpha 0.001") {
          trace(mirror, at(theta, 180), at(theta + 5, 0), settings(4, 4, 4)).values)
       REQUIRE(value < 1e-4 * peak);
   }
+  // Directions drawn from it, at the ends of the random numbers' range: where they are drawn at
+  // all, they are unit vectors, and reflections take no more than there is.
+  constexpr float last = 0x1.fffffep-1F;
+  for (const double theta : {0.0, 1e-3, 45.0, 89.0, 89.9}) {
+    for (int i = 0; i <= 256; ++i) {
+      for (const float u : {0.0F, 0x1p-24F, last}) {
+        for (const float lobe : {0.0F, last}) {
+          const float v = std::min(static_cast<float>(i) / 256, last);
+          const Bsdf::Sample sample = mirror.materials[0].sample(at(theta, 30), {lobe, u, v});
+          INFO("theta " << theta << ", numbers " << lobe << ' ' << u << ' ' << v);
+          REQUIRE(sample.pdf >= 0);
+          if (sample.pdf == 0) continue;
+          REQUIRE(sample.light.length() == Approx(1).epsilon(1e-5));
+          REQUIRE(sample.light.z > 0);
+          REQUIRE(sample.weight.x >= 0);
+          REQUIRE(std::isfinite(sample.weight.x));
+          // Over 0.95, the share of that lobe. At grazing views the diffuse part of the tail adds.
+          if (lobe == 0 && theta <= 45) REQUIRE(sample.weight.x < 1.06);
+        }
+      }
+    }
+  }
   // Bounces drawn from it on a bumpy surface: all are finite.
   Mesostructure bumpy = test::checker(64);
   bumpy.materials.assign(2, Bsdf::conductor_f0(Rgb(0.9F), 0.001F));
@@ -150,30 +340,17 @@ TEST_CASE("albedo 1, with unlimited bounces") {
 }
 
 TEST_CASE("a deep pit that needs 64 bounces") {
-  // A shaft 0.8 tiles wide and 6.4 deep below a rim, white as snow.
-  TriangleMesh mesh;
-  const auto quad = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), {a, b, c, d});
-    mesh.triangles.push_back({first, first + 1, first + 2});
-    mesh.triangles.push_back({first, first + 2, first + 3});
-    mesh.materials.insert(mesh.materials.end(), {0, 0});
-  };
-  const std::array<Vec3, 4> top = {
-      Vec3(0.1F, 0.1F, 0), {0.9F, 0.1F, 0}, {0.9F, 0.9F, 0}, {0.1F, 0.9F, 0}};
-  const std::array<Vec3, 4> rim = {Vec3(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  const Vec3 down(0, 0, -6.4F);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::size_t j = (i + 1) % 4;
-    quad(rim[i], rim[j], top[j], top[i]);
-    quad(top[j], top[i], top[i] + down, top[j] + down);
-  }
-  quad(top[0] + down, top[1] + down, top[2] + down, top[3] + down);
-  mesh.material_names = {"default"};
-  const Mesostructure shaft = test::structure(mesh, {Bsdf::lambert(Rgb(0.99F))}, 0);
-  const double with_64 = agree(shaft, at(5, 20), at(60, 0), settings(8, 512, 64));
-  const double with_8 = agree(shaft, at(5, 20), at(60, 0), settings(8, 512, 8));
-  CHECK(with_64 > 1.05 * with_8);
+  // A white flask, whose neck is 3 % of its sphere.
+  const Cavity flask(0.45, std::acos(0.94), 0.99F);
+  flask.agrees(1, 0, 16, 64);
+  flask.agrees(64, 0, 3, 64);
+  CHECK(flask.expected(64, 0) > 1.9 * flask.expected(16, 0));
+}
+
+TEST_CASE("a pit as black as soot, where roulette ends the paths") {
+  const Cavity pit(0.45, std::numbers::pi / 2, 0.01F);
+  pit.agrees(1, 0, 8, 8);
+  pit.agrees(TraceSettings::unlimited, 1, 8, 64);
 }
 
 TEST_CASE("a tile of 1e-4 and of 1e4 world units") {
@@ -200,6 +377,7 @@ TEST_CASE("yarns that touch each other and the floor") {
       mesh, {Bsdf::lambert({0.1F, 0.3F, 0.6F}), Bsdf::lambert({0.9F, 0.7F, 0.2F})}, 0.1F);
   agree(rings, at(50, 20), at(40, 100), settings(16, 256, 8));
   agree(rings, at(80, 20), at(70, 100), settings(16, 256, 8));
+  agree_directly(rings, {0.3, 0.7}, at(80, 20), at(70, 100));
 }
 
 TEST_CASE("a million triangles", "[heavy]") {
