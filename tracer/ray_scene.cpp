@@ -54,6 +54,16 @@ void check_finite(const TriangleMesh& mesh, std::size_t index) {
   }
 }
 
+void check_finite(const CurveSet& curves, std::size_t index) {
+  for (std::size_t i = 0; i < curves.controls.size(); ++i) {
+    const auto& [p, radius] = curves.controls[i];
+    if (!std::isfinite(p.x + p.y + p.z) || !(radius >= 0) || !std::isfinite(radius)) {
+      throw bad_input(fmt::format("curve set {}", index),
+                      fmt::format("control {} is not finite, or its radius is negative", i));
+    }
+  }
+}
+
 }  // namespace
 
 void RayStream::resize(std::size_t n) {
@@ -71,6 +81,12 @@ void RayStream::resize(std::size_t n) {
 struct RayScene::Device {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  // Embree's own copies of the curves.
+  struct Curves {
+    const CurveSet::Control* controls;
+    const std::uint32_t* segments;
+  };
+  std::vector<Curves> curves;
 
   Device() = default;
   Device(const Device&) = delete;
@@ -94,13 +110,38 @@ struct RayScene::Device {
     }
     std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
     std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices);
+    attach(geometry);
+  }
+
+  void add(const CurveSet& set) {
+    // As fast as Catmull-Rom curves and smoother; cones are twice as fast, but their joints show.
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
+    static_assert(sizeof(CurveSet::Control) == 4 * sizeof(float));
+    auto* controls = static_cast<CurveSet::Control*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                sizeof(CurveSet::Control), set.controls.size()));
+    auto* segments = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                                sizeof(std::uint32_t), set.segments.size()));
+    if (controls == nullptr || segments == nullptr) {
+      rtcReleaseGeometry(geometry);
+      throw failed("Embree", "no memory for the curves");
+    }
+    std::copy(set.controls.begin(), set.controls.end(), controls);
+    std::copy(set.segments.begin(), set.segments.end(), segments);
+    curves.push_back({controls, segments});
+    attach(geometry);
+  }
+
+  void attach(RTCGeometry geometry) const {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
   }
 };
 
-RayScene::RayScene(std::span<const TriangleMesh* const> meshes)
+RayScene::RayScene(std::span<const TriangleMesh* const> meshes,
+                   std::span<const CurveSet* const> curves)
     : device_(std::make_unique<Device>()) {
   device_->device = rtcNewDevice(device_settings);
   if (device_->device == nullptr) throw failed("Embree", "no device could be made");
@@ -111,6 +152,11 @@ RayScene::RayScene(std::span<const TriangleMesh* const> meshes)
     check_finite(*meshes[i], i);
     device_->add(*meshes[i]);
   }
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    check_finite(*curves[i], i);
+    device_->add(*curves[i]);
+  }
+  if (!curves.empty()) first_curves_ = static_cast<std::uint32_t>(meshes.size());
   rtcCommitScene(device_->scene);
   if (rtcGetDeviceError(device_->device) != RTC_ERROR_NONE) {
     throw failed("Embree", "the acceleration structure could not be built",
@@ -124,6 +170,20 @@ RayScene::RayScene(const TriangleMesh& mesh)
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+float RayScene::around_curve(const RayHit& hit, const Vec3& normal) const {
+  const Device::Curves& set = device_->curves[hit.mesh - first_curves_];
+  return curve_angle(set.controls + set.segments[hit.primitive], hit.u, normal);
+}
+
+template <typename Rays>
+void RayScene::name_curve_hits(Rays& rays, std::size_t count) const {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (rays.mesh[i] == RayHit::none || rays.mesh[i] < first_curves_) continue;
+    rays.v[i] = around_curve({0, rays.u[i], 0, rays.mesh[i], rays.primitive[i]},
+                             {rays.ngx[i], rays.ngy[i], rays.ngz[i]});
+  }
+}
 
 RayHit RayScene::intersect(const Vec3& origin, const Vec3& direction, float near, float far) const {
   RTCIntersectContext context = context_for(Coherence::incoherent);
@@ -143,7 +203,10 @@ RayHit RayScene::intersect(const Vec3& origin, const Vec3& direction, float near
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(device_->scene, &context, &query);
-  return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.geomID, query.hit.primID};
+  RayHit hit{query.ray.tfar, query.hit.u, query.hit.v, query.hit.geomID, query.hit.primID};
+  if (hit.hit() && hit.mesh >= first_curves_)
+    hit.v = around_curve(hit, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z});
+  return hit;
 }
 
 bool RayScene::occluded(const Vec3& origin, const Vec3& direction, float near, float far) const {
@@ -177,6 +240,7 @@ void RayScene::intersect(RayStream& rays, std::size_t count, Coherence coherence
                             .geomID = rays.mesh.data(),
                             .instID = {rays.instance.data()}}};
   rtcIntersectNp(device_->scene, &context, &query, static_cast<unsigned>(count));
+  if (first_curves_ != RayHit::none) name_curve_hits(rays, count);
 }
 
 void RayScene::occluded(RayStream& rays, std::size_t count, Coherence coherence) const {
@@ -207,6 +271,7 @@ void RayScene::intersect(HitPacket& packet, std::uint16_t active, Coherence cohe
   const IntLanes valid = lanes_of_bits(active);
   rtcIntersect16(reinterpret_cast<const int*>(&valid), device_->scene, &context,
                  reinterpret_cast<RTCRayHit16*>(&packet));
+  if (first_curves_ != RayHit::none) name_curve_hits(packet, lanes);
 }
 
 void RayScene::occluded(RayPacket& packet, std::uint16_t active, Coherence coherence) const {

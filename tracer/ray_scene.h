@@ -1,4 +1,5 @@
-// Rays against triangles: the one interface to Embree (only ray_scene.cpp names it).
+// Rays against triangles and round fibres: the one interface to Embree (only ray_scene.cpp names
+// it).
 #pragma once
 
 #include <cstdint>
@@ -6,13 +7,15 @@
 #include <span>
 #include <vector>
 
+#include "tracer/curves.h"
 #include "tracer/lanes.h"
 #include "tracer/triangle_mesh.h"
 
 namespace weft {
 
 /// Nearest hit of a ray. The hit point is (1-u-v) p0 + u p1 + v p2 of triangle `primitive` of mesh
-/// `mesh`.
+/// `mesh`; curve sets count on after the meshes, and there it is `curve_point` of segment
+/// `primitive`.
 struct RayHit {
   static constexpr std::uint32_t none = 0xFFFFFFFF;
   float distance = 0;
@@ -73,9 +76,11 @@ enum class Coherence { coherent, incoherent };
 
 class RayScene {
  public:
-  /// Builds the acceleration structure over copies of the meshes' triangles; deterministic.
+  /// Builds the acceleration structure over copies of the meshes' triangles and of the curves;
+  /// deterministic.
   /// @throws Error  where a position is not finite.
-  explicit RayScene(std::span<const TriangleMesh* const> meshes);
+  explicit RayScene(std::span<const TriangleMesh* const> meshes,
+                    std::span<const CurveSet* const> curves = {});
   explicit RayScene(const TriangleMesh& mesh);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
@@ -97,7 +102,13 @@ class RayScene {
 
  private:
   struct Device;
+  // Embree tells a hit on a curve by its normal: writes `v` instead.
+  float around_curve(const RayHit& hit, const Vec3& normal) const;
+  template <typename Rays>
+  void name_curve_hits(Rays& rays, std::size_t count) const;
+
   std::unique_ptr<Device> device_;
+  std::uint32_t first_curves_ = RayHit::none;  // the number of the first curve set
 };
 
 }  // namespace weft
