@@ -27,9 +27,10 @@ const MesostructureType& type_of(const Settings& settings) {
 }
 
 /// Moves the content by (du, dv); whole tiles of it change nothing.
-void shift(TriangleMesh& mesh, const Vec2& offset) {
+void shift(TileGeometry& tile, const Vec2& offset) {
   const Vec3 move(offset.x - std::floor(offset.x), offset.y - std::floor(offset.y), 0);
-  for (Vec3& p : mesh.positions) p += move;
+  for (Vec3& p : tile.mesh.positions) p += move;
+  for (CurveSet::Control& control : tile.curves.controls) control.position += move;
 }
 
 void add_floor(TriangleMesh& mesh, const Settings& floor) {
@@ -83,16 +84,22 @@ std::vector<Bsdf> read_materials(const Settings& settings, const MesostructureTy
   return materials;
 }
 
-/// Lowest and highest z of a mesh.
-std::pair<float, float> heights_of(const TriangleMesh& mesh) {
-  const auto [low, high] = std::ranges::minmax_element(mesh.positions, {}, &Vec3::z);
-  return {low->z, high->z};
+/// Lowest and highest z of a tile.
+std::pair<float, float> heights_of(const TileGeometry& tile) {
+  const Bounds curves = bounds_of(tile.curves);
+  float low = curves.low.z;
+  float high = curves.high.z;
+  for (const Vec3& p : tile.mesh.positions) {
+    low = std::min(low, p.z);
+    high = std::max(high, p.z);
+  }
+  return {low, high};
 }
 
 /// Rays start outside and meet the structure wherever the plane is; below all of it, the plane is a
 /// mistake: what is seen slides by more than it is deep.
-float read_reference_height(const Settings& settings, const TriangleMesh& mesh) {
-  const auto [low, high] = heights_of(mesh);
+float read_reference_height(const Settings& settings, const TileGeometry& tile) {
+  const auto [low, high] = heights_of(tile);
   const auto height = static_cast<float>(settings.number("reference_height", high, -100, 100));
   constexpr float rounding = 1e-4F;
   if (height < low - rounding) {
@@ -113,13 +120,15 @@ Mesostructure read_mesostructure(const std::filesystem::path& path,
   const MesostructureType& type = type_of(settings);
   Mesostructure result;
   result.type = type.name;
-  result.mesh = type.build(settings);
-  if (!settings.flag("smooth", false)) result.mesh.normals.clear();
-  shift(result.mesh, settings.vec2("offset", Vec2(0, 0)));
-  if (settings.has("floor")) add_floor(result.mesh, settings.table("floor"));
-  result.materials = read_materials(settings, type, result.mesh.material_names);
+  TileGeometry tile = type.build(settings);
+  if (!settings.flag("smooth", false)) tile.mesh.normals.clear();
+  shift(tile, settings.vec2("offset", Vec2(0, 0)));
+  if (settings.has("floor")) add_floor(tile.mesh, settings.table("floor"));
+  result.materials = read_materials(settings, type, tile.mesh.material_names);
   result.tile_size = static_cast<float>(settings.number("tile_size", 1, 1e-6, 1e6));
-  result.reference_height = read_reference_height(settings, result.mesh);
+  result.reference_height = read_reference_height(settings, tile);
+  result.mesh = std::move(tile.mesh);
+  result.curves = std::move(tile.curves);
   settings.finish();
   result.settings = settings.canonical_json();
   return result;

@@ -47,17 +47,14 @@ class PathWalk {
       ++rays_;
       const RayHit hit = scene.intersect(origin, direction);
       if (!hit.hit()) break;
-      const Facet& facet = structure_.facets[hit.primitive];
-      if (facet.degenerate()) break;
-      const bool behind = (facet.normal ^ direction) > 0;
-      const Vec3 facet_normal = behind ? -facet.normal : facet.normal;
-      const Frame frame =
-          frame_around(shading_normal(structure_.mesostructure.mesh, hit.primitive, hit.u, hit.v,
-                                      facet_normal, behind, direction));
-      const Bsdf& bsdf = structure_.mesostructure.materials[facet.material];
+      const Met met = structure_.facets.size() > hit.primitive ? meet_facet(hit, direction)
+                                                               : meet_curve(hit, direction);
+      if (met.degenerate) break;
+      const Frame frame = frame_around(met.shading_normal);
+      const Bsdf& bsdf = structure_.mesostructure.materials[met.material];
       const Direction towards_viewer = frame.to_local(-direction);
-      origin = ray_origin(facet.point(hit.u, hit.v), facet_normal);
-      if ((facet_normal ^ light_) > 0) {
+      origin = ray_origin(met.point, met.facet_normal);
+      if ((met.facet_normal ^ light_) > 0) {
         ++rays_;
         if (!scene.intersect(origin, light_).hit())
           sum += Imath::V3d(bsdf.evaluate(frame.to_local(light_), towards_viewer) * throughput);
@@ -66,7 +63,7 @@ class PathWalk {
           bsdf.sample(towards_viewer, {numbers.next(), numbers.next(), numbers.next()});
       if (!(sample.pdf > 0)) break;
       direction = frame.to_world(sample.light).normalized();
-      if (!((direction ^ facet_normal) > 0)) break;
+      if (!((direction ^ met.facet_normal) > 0)) break;
       throughput *= sample.weight;
       const float brightness = max_component(throughput);
       if (brightness < PathEnd::dim) {
@@ -80,6 +77,35 @@ class PathWalk {
   std::int64_t rays() const { return rays_; }
 
  private:
+  // Where a ray has arrived; normals on its side.
+  struct Met {
+    Vec3 point;
+    Vec3 facet_normal;
+    Vec3 shading_normal;
+    std::uint16_t material = 0;
+    bool degenerate = false;
+  };
+
+  Met meet_facet(const RayHit& hit, const Vec3& direction) const {
+    const Facet& facet = structure_.facets[hit.primitive];
+    if (facet.degenerate())
+      return {.point = {}, .facet_normal = {}, .shading_normal = {}, .degenerate = true};
+    const bool behind = (facet.normal ^ direction) > 0;
+    const Vec3 normal = behind ? -facet.normal : facet.normal;
+    return {facet.point(hit.u, hit.v), normal,
+            shading_normal(structure_.mesostructure.mesh, hit.primitive, hit.u, hit.v, normal,
+                           behind, direction),
+            facet.material, false};
+  }
+
+  Met meet_curve(const RayHit& hit, const Vec3& direction) const {
+    const CurveSet& curves = structure_.mesostructure.curves;
+    const std::size_t segment = hit.primitive - structure_.facets.size();
+    const CurvePoint point = curve_point(curves, segment, hit.u, hit.v);
+    const Vec3 normal = (point.normal ^ direction) > 0 ? -point.normal : point.normal;
+    return {point.position, normal, normal, curves.materials[segment], false};
+  }
+
   const TraceableStructure& structure_;
   const TraceSettings& settings_;
   Direction view_;

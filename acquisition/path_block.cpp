@@ -188,11 +188,15 @@ void PathBlock::follow_paths() {
 
 void PathBlock::look_up(std::size_t first) {
   const std::size_t count = std::min<std::size_t>(lanes, paths_.size() - first);
-  for (std::size_t i = 0; i < count; ++i)
-    __builtin_prefetch(&tracer_.facets()[paths_[first + i].facet]);
+  const std::size_t facets = tracer_.facets().size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (paths_[first + i].facet < facets)
+      __builtin_prefetch(&tracer_.facets()[paths_[first + i].facet]);
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const Path& path = paths_[first + i];
-    answers_[i] = tracer_.visibility().at(path.facet, path.u, path.v);
+    answers_[i] = path.facet < facets ? tracer_.visibility().at(path.facet, path.u, path.v)
+                                      : tracer_.visibility().unknown();
     __builtin_prefetch(answers_[i]);
     __builtin_prefetch(answers_[i] + groups_ - 1);
   }
@@ -200,6 +204,10 @@ void PathBlock::look_up(std::size_t first) {
 
 bool PathBlock::arrive(const Path& path, const VisibilityTable::Answer* answers, Vertex& vertex,
                        Vec3& origin) const {
+  if (path.facet >= tracer_.facets().size()) {
+    arrive_on_curve(path, vertex, origin);
+    return true;
+  }
   const Facet& facet = tracer_.facets()[path.facet];
   if (facet.degenerate()) return false;
   const bool behind = (facet.normal ^ path.direction) > 0;
@@ -211,6 +219,20 @@ bool PathBlock::arrive(const Path& path, const VisibilityTable::Answer* answers,
   vertex.answers = behind ? tracer_.visibility().unknown() : answers;
   origin = ray_origin(facet.point(path.u, path.v), vertex.facet_normal);
   return true;
+}
+
+// The table knows nothing of curves.
+void PathBlock::arrive_on_curve(const Path& path, Vertex& vertex, Vec3& origin) const {
+  const CurveSet& curves = tracer_.mesostructure().curves;
+  const std::size_t segment = path.facet - tracer_.facets().size();
+  const CurvePoint point = curve_point(curves, segment, path.u, path.v);
+  const bool behind = (point.normal ^ path.direction) > 0;
+  vertex.facet_normal = behind ? -point.normal : point.normal;
+  vertex.frame = frame_around(vertex.facet_normal);
+  vertex.view = vertex.frame.to_local(-path.direction);
+  vertex.bsdf = &tracer_.mesostructure().materials[curves.materials[segment]];
+  vertex.answers = tracer_.visibility().unknown();
+  origin = ray_origin(point.position, vertex.facet_normal);
 }
 
 void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce) {

@@ -60,8 +60,8 @@ class PathBlock {
 
   struct Path {
     Rgb throughput;
-    Vec3 direction;  // of the ray that arrives
-    std::uint32_t facet;
+    Vec3 direction;       // of the ray that arrives
+    std::uint32_t facet;  // or, after the facets, a segment of a curve
     float u, v;
     std::uint32_t texel;  // of the block
     std::uint32_t sample;
@@ -98,6 +98,7 @@ class PathBlock {
   // False for a triangle without an area.
   bool arrive(const Path& path, const VisibilityTable::Answer* answers, Vertex& vertex,
               Vec3& origin) const;
+  void arrive_on_curve(const Path& path, Vertex& vertex, Vec3& origin) const;
   // Adds the light that the path's vertex reflects directly, from every light.
   void connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce);
   void trace_connections(ShadowQueue& queue, Coherence coherence);

@@ -16,6 +16,7 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 // More copies serve more rays in packets; fewer keep large meshes in memory.
 constexpr std::size_t triangles_for_wide_reach = 1'000'000;
+constexpr std::size_t triangles_a_segment = 4;  // of a curve, by memory
 constexpr int max_tiles_wide = 8;
 // A ray that goes on begins this much before where it left, so that no surface falls between.
 constexpr float step_back = 1e-5F;
@@ -29,15 +30,12 @@ bool has_area(const TriangleMesh& mesh) {
   });
 }
 
-struct Bounds {
-  Vec3 low{infinity, infinity, infinity};
-  Vec3 high{-infinity, -infinity, -infinity};
-};
-
-Bounds bounds_of(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) throw bad_input("mesostructure", "has no triangles");
-  if (!has_area(mesh)) throw bad_input("mesostructure", "has no triangle with an area");
-  Bounds bounds;
+Bounds bounds_of(const TriangleMesh& mesh, const CurveSet& curves) {
+  if (mesh.triangles.empty() && curves.segments.empty())
+    throw bad_input("mesostructure", "has no triangles");
+  if (curves.segments.empty() && !has_area(mesh))
+    throw bad_input("mesostructure", "has no triangle with an area");
+  Bounds bounds = bounds_of(curves);
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) {
       const Vec3& p = mesh.positions[corner];
@@ -55,7 +53,7 @@ Bounds bounds_of(const TriangleMesh& mesh) {
 
 // Copies to each side: what is complete reaches a whole tile further than the central one, two
 // where that is cheap.
-int reach_of(const TriangleMesh& mesh, const Bounds& bounds) {
+int reach_of(const TriangleMesh& mesh, const CurveSet& curves, const Bounds& bounds) {
   const float overhang =
       std::max({0.0F, bounds.high.x - 1, bounds.high.y - 1, -bounds.low.x, -bounds.low.y});
   if (overhang > max_tiles_wide) {
@@ -66,7 +64,8 @@ int reach_of(const TriangleMesh& mesh, const Bounds& bounds) {
   }
   const int around = static_cast<int>(std::ceil(overhang));
   const auto copies = static_cast<std::size_t>(2 * (2 + around) + 1);
-  return (copies * copies * mesh.triangles.size() <= triangles_for_wide_reach ? 2 : 1) + around;
+  const std::size_t size = mesh.triangles.size() + triangles_a_segment * curves.segments.size();
+  return (copies * copies * size <= triangles_for_wide_reach ? 2 : 1) + around;
 }
 
 TriangleMesh copy_at(const TriangleMesh& mesh, int column, int row) {
@@ -78,23 +77,50 @@ TriangleMesh copy_at(const TriangleMesh& mesh, int column, int row) {
   return copy;
 }
 
-RayScene scene_of(const TriangleMesh& mesh, int reach) {
-  std::vector<TriangleMesh> copies;
+CurveSet copy_at(const CurveSet& curves, int column, int row) {
+  CurveSet copy;
+  copy.segments = curves.segments;
+  copy.controls = curves.controls;
+  const Vec3 shift(static_cast<float>(column), static_cast<float>(row), 0);
+  for (CurveSet::Control& control : copy.controls) control.position += shift;
+  return copy;
+}
+
+template <typename Shape>
+std::vector<Shape> copies_of(const Shape& shape, int reach) {
+  std::vector<Shape> copies;
   for (int row = -reach; row <= reach; ++row) {
     for (int column = -reach; column <= reach; ++column)
-      copies.push_back(copy_at(mesh, column, row));
+      copies.push_back(copy_at(shape, column, row));
   }
-  std::vector<const TriangleMesh*> pointers;
-  for (const TriangleMesh& copy : copies) pointers.push_back(&copy);
-  return RayScene(pointers);
+  return copies;
+}
+
+template <typename Shape>
+std::vector<const Shape*> pointers_to(const std::vector<Shape>& shapes) {
+  std::vector<const Shape*> pointers;
+  for (const Shape& shape : shapes) pointers.push_back(&shape);
+  return pointers;
+}
+
+RayScene scene_of(const TriangleMesh& mesh, const CurveSet& curves, int reach) {
+  std::vector<TriangleMesh> meshes;
+  if (!mesh.triangles.empty()) meshes = copies_of(mesh, reach);
+  std::vector<CurveSet> sets;
+  if (!curves.segments.empty()) sets = copies_of(curves, reach);
+  return RayScene(pointers_to(meshes), pointers_to(sets));
 }
 
 }  // namespace
 
-PeriodicScene::PeriodicScene(const TriangleMesh& tile)
-    : scene_(scene_of(tile, reach_of(tile, bounds_of(tile)))) {
-  const Bounds bounds = bounds_of(tile);
-  const auto reach = static_cast<float>(reach_of(tile, bounds));
+PeriodicScene::PeriodicScene(const TriangleMesh& tile, const CurveSet& curves)
+    : triangles_(static_cast<std::uint32_t>(tile.triangles.size())),
+      scene_(scene_of(tile, curves, reach_of(tile, curves, bounds_of(tile, curves)))) {
+  const Bounds bounds = bounds_of(tile, curves);
+  const int copies = reach_of(tile, curves, bounds);
+  const auto meshes = static_cast<std::uint32_t>((2 * copies + 1) * (2 * copies + 1));
+  if (!curves.segments.empty()) first_curves_ = triangles_ > 0 ? meshes : 0;
+  const auto reach = static_cast<float>(copies);
   bottom_ = bounds.low.z;
   top_ = bounds.high.z;
   margin_ = 1e-4F * std::max({1.0F, std::abs(top_), std::abs(bottom_)});
@@ -131,6 +157,12 @@ std::uint16_t PeriodicScene::bound(RayPacket& packet) const {
   return bits_of_lanes(side < level);
 }
 
+RayHit PeriodicScene::nearest(const Vec3& origin, const Vec3& direction, float far) const {
+  RayHit hit = scene_.intersect(origin, direction, 0, far);
+  if (hit.hit() && hit.mesh >= first_curves_) hit.primitive += triangles_;
+  return hit;
+}
+
 // Follows a ray that left the copies without a hit, tile by tile.
 PeriodicScene::TracedOn PeriodicScene::trace_on(Vec3 origin, const Vec3& direction) const {
   Exit end = exit(origin, direction);
@@ -141,7 +173,7 @@ PeriodicScene::TracedOn PeriodicScene::trace_on(Vec3 origin, const Vec3& directi
     origin.y = tile_fraction(origin.y);
     end = exit(origin, direction);
     ++result.rays;
-    result.hit = scene_.intersect(origin, direction, 0, end.distance);
+    result.hit = nearest(origin, direction, end.distance);
   }
   return result;
 }
@@ -161,6 +193,12 @@ std::int64_t PeriodicScene::intersect(HitPacket& packet, std::uint16_t active,
                                       Coherence coherence) const {
   const std::uint16_t sideways = bound(packet.ray) & active;
   scene_.intersect(packet, active, coherence);
+  if (first_curves_ != RayHit::none) {
+    for (int i = 0; i < lanes; ++i) {
+      if (packet.mesh[i] != RayHit::none && packet.mesh[i] >= first_curves_)
+        packet.primitive[i] += triangles_;
+    }
+  }
   if (sideways == 0) return 0;
   std::int64_t traced_on = 0;
   for (int i = 0; i < lanes; ++i) {
@@ -191,7 +229,7 @@ std::int64_t PeriodicScene::occluded(RayPacket& packet, std::uint16_t active,
 }
 
 RayHit PeriodicScene::intersect(const Vec3& origin, const Vec3& direction) const {
-  const RayHit hit = scene_.intersect(origin, direction, 0, exit(origin, direction).distance);
+  const RayHit hit = nearest(origin, direction, exit(origin, direction).distance);
   return hit.hit() ? hit : trace_on(origin, direction).hit;
 }
 

@@ -67,7 +67,7 @@ VisibilityTable table_for(const std::vector<Facet>& facets, const LightSet& ligh
   const double bytes =
       cells * static_cast<double>(lights.groups() * sizeof(VisibilityTable::Answer));
   const double rays = paths / (paths_a_ray * cells);
-  if (!s.table || rays < VisibilityTable::least_rays || bytes > table_bytes)
+  if (!s.table || facets.empty() || rays < VisibilityTable::least_rays || bytes > table_bytes)
     return {facets, lights};
   return {facets, lights, scene, static_cast<int>(std::min(rays, 1e3))};
 }
@@ -76,7 +76,7 @@ VisibilityTable table_for(const std::vector<Facet>& facets, const LightSet& ligh
 
 TraceableStructure::TraceableStructure(Mesostructure structure)
     : mesostructure(std::move(structure)),
-      scene(mesostructure.mesh),
+      scene(mesostructure.mesh, mesostructure.curves),
       facets(facets_of(mesostructure.mesh)) {}
 
 ViewTracer::ViewTracer(Mesostructure mesostructure, std::vector<Direction> lights,
