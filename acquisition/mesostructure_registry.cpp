@@ -10,6 +10,7 @@ std::span<const MesostructureType> mesostructure_types() {
       rings_type(),        //
       tissue_type(),       //
       weave_type(),        //
+      knit_type(),         //
       corduroy_type(),     //
       leather_type(),      //
       gravel_type(),       //

@@ -9,6 +9,7 @@ MesostructureType checker_type();
 MesostructureType rings_type();
 MesostructureType tissue_type();
 MesostructureType weave_type();
+MesostructureType knit_type();
 MesostructureType corduroy_type();
 MesostructureType leather_type();
 MesostructureType gravel_type();

@@ -48,6 +48,7 @@ TEST_CASE("every mesostructure of the project reads, finite and with sound indic
     CHECK(m.settings.find("\"type\":\"" + m.type + "\"") != std::string::npos);
     float top = -1;
     for (const Vec3& p : m.mesh.positions) top = std::max(top, p.z);
+    if (!m.curves.segments.empty()) top = std::max(top, bounds_of(m.curves).high.z);
     CHECK(m.reference_height == Approx(top));
     bool sound = true;
     for (const auto& t : m.mesh.triangles) {
@@ -55,6 +56,10 @@ TEST_CASE("every mesostructure of the project reads, finite and with sound indic
     }
     for (const Vec3& p : m.mesh.positions) sound &= std::isfinite(p.x + p.y + p.z);
     for (const std::uint16_t material : m.mesh.materials) sound &= material < m.materials.size();
+    CHECK(m.curves.materials.size() == m.curves.segments.size());
+    for (const std::uint32_t first : m.curves.segments)
+      sound &= first + 3 < m.curves.controls.size();
+    for (const std::uint16_t material : m.curves.materials) sound &= material < m.materials.size();
     CHECK(sound);
   }
   for (const MesostructureType& type : mesostructure_types()) {

@@ -74,7 +74,8 @@ TEST_CASE("the fast estimator has the plain one's means", "[heavy]") {
            {"checker_lambert.toml", {"resolution=48"}},
            {"checker.toml", {"resolution=48"}},
            {"rings.toml", {"segments=48", "minor_segments=12"}},
-           {"tissue.toml", {}}}) {
+           {"tissue.toml", {}},
+           {"knit.toml", {"stitches=[1, 1]", "yarn.radius=0.12", "yarn.fibres=3"}}}) {
     const Agreement a = agreement(read_mesostructure(scenes + file, overrides), 512, 128);
     INFO(file << ": mean z^2 " << a.mean_square_z << ", outside " << a.outside << ", difference "
               << a.difference << " +- " << a.deviation);
