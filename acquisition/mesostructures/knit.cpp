@@ -1,10 +1,9 @@
 // Knitted wool: a plain (stockinette) knit of plied yarns, down to single fibres.
 //
-// The centre line of a course is that of Wadekar et al., "Geometric modeling of knitted fabrics
-// using helicoid scaffolds" (2020): x = t + a sin(2t), y = h cos(t), z = -d cos(2t), with a = 3/2
-// of 2 pi a stitch; h is 0.85 of the distance of the courses, so that each loop passes through the
-// one below, its legs in front. The depth d is the least at which yarns of the asked radius do not
-// meet.
+// The centre line of a course is the simplest curve of loops that interlock: x = t + a
+// sin(2t), y = h cos(t), z = -d cos(2t), with a = 3/2 of 2 pi a stitch; h is 0.85 of the distance
+// of the courses, so that each loop passes through the one below, its legs in front. The depth d is
+// the least at which yarns of the asked radius do not meet.
 #include <fmt/format.h>
 
 #include <algorithm>
