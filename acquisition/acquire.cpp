@@ -69,6 +69,7 @@ std::string provenance_of(const Mesostructure& mesostructure, const AcquisitionS
   else
     json["max_bounces"] = settings.trace.max_bounces;
   if (settings.trace.error > 0) json["error"] = settings.trace.error;
+  if (settings.trace.indirect_cache) json["indirect"] = "cache";
   if (settings.trace.texel_errors) json["texel_errors"] = true;
   if (settings.trace.cut_height) json["cut_height"] = *settings.trace.cut_height;
   return json.dump();
@@ -131,7 +132,10 @@ AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
   // What is refused is refused before the folder is made, and a tracer costs more than a look.
   std::unique_ptr<const ViewTracer> tracer;
   if (!missing.empty()) tracer.reset(new ViewTracer(tracer_for(mesostructure, settings, header)));
-  if (tracer) report.statistics.table_rays = tracer->visibility().rays();
+  if (tracer) {
+    report.statistics.table_rays = tracer->visibility().rays();
+    report.statistics.cache_rays = tracer->indirect_cache().rays();
+  }
   const std::size_t at_once = views_at_once(settings, header.lights.size());
   BtfWriter writer(folder, header);
   std::mutex mutex;

@@ -57,6 +57,7 @@ AcquisitionReport acquire_offgrid(const Mesostructure& mesostructure,
   const std::string provenance = provenance_of(mesostructure, settings);
   TraceSettings trace = settings.trace;
   trace.texel_errors = trace.spp > 1;
+  trace.indirect_cache = false;  // what others are held against is not biased
   AcquisitionReport report;
   report.lights = 1;
   nlohmann::ordered_json pairs = nlohmann::json::array();

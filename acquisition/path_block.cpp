@@ -13,8 +13,9 @@ namespace {
 
 // One certain answer in so many is checked.
 constexpr std::uint32_t check_every = 256;
-constexpr std::uint32_t most_samples = 64;     // of each texel in a wave
-constexpr std::uint32_t samples_a_check = 16;  // of each texel in a wave, where it may be the last
+constexpr std::uint32_t most_samples = 64;      // of each texel in a wave
+constexpr std::uint32_t samples_a_check = 16;   // of each texel in a wave, where it may be the last
+constexpr std::uint64_t cell_key = 0x43454C4C;  // stands for a view where paths begin on cells
 // Pairs of random numbers of a path: where in the texel, then three a bounce.
 constexpr std::uint64_t texel_pair = 0;
 constexpr std::uint64_t direction_pair(int bounce) {
@@ -60,10 +61,6 @@ void PathBlock::trace(const Direction& view, std::uint64_t view_key, int samples
                       std::span<const double> error_scales, int left, int top) {
   const TraceSettings& s = tracer_.settings();
   const int edge = edge_for(tracer_.lights().size());
-  std::fill(sums_.begin(), sums_.end(), 0.0);
-  std::fill(squares_.begin(), squares_.end(), 0.0);
-  std::fill(grey_squares_.begin(), grey_squares_.end(), 0.0);
-  statistics_ = {};
   view_ = view;
   left_ = left;
   top_ = top;
@@ -76,25 +73,50 @@ void PathBlock::trace(const Direction& view, std::uint64_t view_key, int samples
       keys_[static_cast<std::size_t>(y) * columns_ + x] = hash_coordinates(s.seed, view_key, texel);
     }
   }
-  const auto texels = static_cast<std::size_t>(columns_) * rows_;
+  const auto spp = static_cast<std::uint32_t>(samples);
+  const bool adaptive = !error_scales.empty();
+  clear(
+      static_cast<std::size_t>(columns_) * rows_,
+      std::clamp(spp / most_groups, 1U, (adaptive ? samples_a_check : most_samples) / most_groups));
+  const std::uint32_t wave = group_size_ * most_groups;
+  for (first_sample_ = 0; first_sample_ < spp && !active_.empty(); first_sample_ += wave) {
+    const std::uint32_t end = std::min(first_sample_ + wave, spp);
+    start_paths(end);
+    follow_paths(false);
+    fold_wave(end);
+    if (adaptive) drop_settled(error_scales, end == spp);
+  }
+}
+
+void PathBlock::trace_indirect(std::span<const Cell> cells, std::uint64_t first) {
+  const TraceSettings& s = tracer_.settings();
+  columns_ = static_cast<int>(cells.size());
+  rows_ = 1;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    keys_[i] = hash_coordinates(s.seed, cell_key, first + i);
+  const auto spp = static_cast<std::uint32_t>(s.spp);
+  clear(cells.size(), std::clamp(spp / most_groups, 1U, most_samples / most_groups));
+  const std::uint32_t wave = group_size_ * most_groups;
+  for (first_sample_ = 0; first_sample_ < spp; first_sample_ += wave) {
+    const std::uint32_t end = std::min(first_sample_ + wave, spp);
+    start_paths_on(cells, end);
+    follow_paths(true);
+    fold_wave(end);
+  }
+}
+
+void PathBlock::clear(std::size_t texels, std::uint32_t group_size) {
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  std::fill(squares_.begin(), squares_.end(), 0.0);
+  std::fill(grey_squares_.begin(), grey_squares_.end(), 0.0);
+  statistics_ = {};
   statistics_.texels = static_cast<std::int64_t>(texels);
   active_.resize(texels);
   std::iota(active_.begin(), active_.end(), 0U);
   samples_.assign(texels, 0);
   sample_groups_.assign(texels, 0);
   covered_.assign(texels, 0);
-  const auto spp = static_cast<std::uint32_t>(samples);
-  const bool adaptive = !error_scales.empty();
-  group_size_ =
-      std::clamp(spp / most_groups, 1U, (adaptive ? samples_a_check : most_samples) / most_groups);
-  const std::uint32_t wave = group_size_ * most_groups;
-  for (first_sample_ = 0; first_sample_ < spp && !active_.empty(); first_sample_ += wave) {
-    const std::uint32_t end = std::min(first_sample_ + wave, spp);
-    start_paths(end);
-    follow_paths();
-    fold_wave(end);
-    if (adaptive) drop_settled(error_scales, end == spp);
-  }
+  group_size_ = group_size;
 }
 
 std::array<float, 2> PathBlock::stratified(const Path& path, std::uint64_t pair) const {
@@ -134,6 +156,25 @@ void PathBlock::start_paths(std::uint32_t end_sample) {
   statistics_.missed += started - static_cast<std::int64_t>(next_.size());
 }
 
+void PathBlock::start_paths_on(std::span<const Cell> cells, std::uint32_t end_sample) {
+  paths_.clear();
+  next_.clear();
+  for (const std::uint32_t c : active_) {
+    const Facet& facet = tracer_.facets()[cells[c].facet];
+    if (facet.degenerate()) continue;
+    for (std::uint32_t sample = first_sample_; sample < end_sample; ++sample) {
+      Path path{Rgb(1, 1, 1), -facet.normal, cells[c].facet, 0, 0, c, sample};
+      const auto [x, y] = stratified(path, texel_pair);
+      // Even over the triangle, as the square is folded along its diagonal.
+      const Barycentric at =
+          x + y > 1 ? point_of(cells[c], 1 - x, 1 - y) : point_of(cells[c], x, y);
+      path.u = at[0];
+      path.v = at[1];
+      next_.push_back(path);
+    }
+  }
+}
+
 void PathBlock::send(const Path& path, const Vec3& origin, Coherence coherence) {
   sent_[sent_count_] = path;
   packet_.ray.set(sent_count_, origin, path.direction);
@@ -155,7 +196,7 @@ void PathBlock::flush(Coherence coherence) {
   sent_count_ = 0;
 }
 
-void PathBlock::follow_paths() {
+void PathBlock::follow_paths(bool from_surface) {
   const int most = std::min(tracer_.settings().max_bounces, PathEnd::most_bounces);
   const std::optional<float> cut = tracer_.settings().cut_height;
   for (int bounce = 0; !next_.empty(); ++bounce) {
@@ -172,7 +213,11 @@ void PathBlock::follow_paths() {
         continue;
       }
       if (bounce == 0 && cut && origin.z >= *cut) ++covered_[path.texel];
-      connect(path, vertex, origin, bounce);
+      if (bounce > 0 || !from_surface) connect(path, vertex, origin, bounce);
+      if (vertex.indirect != nullptr) {
+        add_indirect(path, vertex.indirect);
+        continue;
+      }
       if (!last && scatter(path, vertex, bounce)) {
         ++statistics_.bounce_rays;
         send(path, origin, Coherence::incoherent);
@@ -216,6 +261,8 @@ bool PathBlock::arrive(const Path& path, const VisibilityTable::Answer* answers,
                                              path.v, vertex.facet_normal, behind, path.direction));
   vertex.view = vertex.frame.to_local(-path.direction);
   vertex.bsdf = &tracer_.mesostructure().materials[facet.material];
+  const IndirectCache& cache = tracer_.indirect_cache();
+  vertex.indirect = cache.empty() || behind ? nullptr : cache.at(path.facet, path.u, path.v);
   vertex.answers = behind ? tracer_.visibility().unknown() : answers;
   origin = ray_origin(facet.point(path.u, path.v), vertex.facet_normal);
   return true;
@@ -287,6 +334,15 @@ void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& orig
              value.r[i], value.g[i], value.b[i]});
       }
     }
+  }
+}
+
+void PathBlock::add_indirect(const Path& path, const RgbLanes* indirect) {
+  FloatLanes* wave = &wave_[slot(path) * groups_ * 3];
+  for (std::size_t g = 0; g < groups_; ++g, wave += 3) {
+    wave[0] += indirect[g].r * path.throughput.x;
+    wave[1] += indirect[g].g * path.throughput.y;
+    wave[2] += indirect[g].b * path.throughput.z;
   }
 }
 

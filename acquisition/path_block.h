@@ -37,6 +37,12 @@ class PathBlock {
   void trace(const Direction& view, std::uint64_t view_key, int samples,
              std::span<const double> error_scales, int left, int top);
 
+  /// Traces the settings' number of paths that leave each of the cells, at most edge * edge; a mean
+  /// is then what the cell reflects towards its front of light that has been reflected before. The
+  /// "texels" of what follows are the cells.
+  /// @param first  the number of the first cell, for the random numbers.
+  void trace_indirect(std::span<const Cell> cells, std::uint64_t first);
+
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   /// Mean over the samples of a texel of the block (row * columns + column), for a light and a
@@ -74,6 +80,7 @@ class PathBlock {
     Direction view;  // in the frame
     const Bsdf* bsdf = nullptr;
     const VisibilityTable::Answer* answers = nullptr;
+    const RgbLanes* indirect = nullptr;  // light reflected before; null where it is to be traced
   };
 
   std::size_t place(std::size_t texel, std::size_t light, int channel) const {
@@ -88,11 +95,15 @@ class PathBlock {
   std::uint32_t slot(const Path& path) const {
     return path.texel * most_groups + (path.sample - first_sample_) / group_size_;
   }
+  // Forgets the last call.
+  void clear(std::size_t texels, std::uint32_t group_size);
   void start_paths(std::uint32_t end_sample);
+  void start_paths_on(std::span<const Cell> cells, std::uint32_t end_sample);
   // Traces the ray that `path` is to follow, packet by packet; keeps the paths that hit.
   void send(const Path& path, const Vec3& origin, Coherence coherence);
   void flush(Coherence coherence);
-  void follow_paths();
+  // Where paths begin on the surface, they bring indirect light alone.
+  void follow_paths(bool from_surface);
   // Asks the table for sixteen paths from `first` on: what they wait for in memory comes at once.
   void look_up(std::size_t first);
   // False for a triangle without an area.
@@ -101,6 +112,8 @@ class PathBlock {
   void arrive_on_curve(const Path& path, Vertex& vertex, Vec3& origin) const;
   // Adds the light that the path's vertex reflects directly, from every light.
   void connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce);
+  // Adds the light that the path's vertex reflects and that was reflected before, from the cache.
+  void add_indirect(const Path& path, const RgbLanes* indirect);
   void trace_connections(ShadowQueue& queue, Coherence coherence);
   // Draws where a path goes on. False where it ends.
   bool scatter(Path& path, const Vertex& vertex, int bounce);

@@ -29,6 +29,7 @@ TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
   bounce_rays += other.bounce_rays;
   shadow_rays += other.shadow_rays;
   table_rays += other.table_rays;
+  cache_rays += other.cache_rays;
   visibility_queries += other.visibility_queries;
   answers_checked += other.answers_checked;
   wrong_answers += other.wrong_answers;
@@ -106,6 +107,7 @@ ViewTracer::ViewTracer(std::shared_ptr<const TraceableStructure> structure,
     throw bad_input("--max-bounces",
                     fmt::format("is {}; expected at least 0", settings_.max_bounces));
   }
+  if (settings_.indirect_cache && settings_.max_bounces > 0) indirect_cache_ = IndirectCache(*this);
 }
 
 TracedView ViewTracer::trace(const Direction& view, std::uint64_t view_key) const {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "acquisition/facets.h"
+#include "acquisition/indirect_cache.h"
 #include "acquisition/light_set.h"
 #include "acquisition/mesostructure.h"
 #include "acquisition/periodic_scene.h"
@@ -30,6 +31,9 @@ struct TraceSettings {
   std::size_t views = 1;
   /// Without it every visibility query is traced.
   bool table = true;
+  /// Takes what Lambert surfaces reflect of indirect light from a cache that all views share.
+  /// Biased: see `IndirectCache`.
+  bool indirect_cache = false;
   /// Where > 0, a texel of a view gets samples, at least 16 and at most `spp`, until the root mean
   /// square over lights of its standard error / max(m, 1e-3 of the largest m) is below; m is the
   /// tile's mean for that light, as a few other samples tell, and all is of the mean of RGB.
@@ -56,6 +60,7 @@ struct TraceStatistics {
   std::int64_t bounce_rays = 0;
   std::int64_t shadow_rays = 0;
   std::int64_t table_rays = 0;          ///< that made the visibility table, once a dataset
+  std::int64_t cache_rays = 0;          ///< that made the cache of indirect light, once a dataset
   std::int64_t visibility_queries = 0;  ///< asked by the estimator: traced, or answered by a table
   std::int64_t answers_checked = 0;     ///< certain answers that were traced all the same
   std::int64_t wrong_answers = 0;       ///< of those
@@ -72,7 +77,7 @@ struct TraceStatistics {
   std::int64_t unsettled = 0;  ///< texels of views that had all samples and missed the target error
 
   std::int64_t rays() const {
-    return primary_rays + bounce_rays + shadow_rays + table_rays + rays_traced_on;
+    return primary_rays + bounce_rays + shadow_rays + table_rays + cache_rays + rays_traced_on;
   }
   TraceStatistics& operator+=(const TraceStatistics& other);
 };
@@ -114,6 +119,7 @@ class ViewTracer {
   const PeriodicScene& scene() const { return structure_->scene; }
   const std::vector<Facet>& facets() const { return structure_->facets; }
   const VisibilityTable& visibility() const { return visibility_; }
+  const IndirectCache& indirect_cache() const { return indirect_cache_; }
 
  private:
   std::vector<double> error_scales(const std::vector<float>& values) const;
@@ -124,6 +130,7 @@ class ViewTracer {
   LightSet lights_;
   TraceSettings settings_;
   VisibilityTable visibility_;
+  IndirectCache indirect_cache_;
 };
 
 /// @throws Error  where a direction is more than 89.9 degrees from the normal; `role` is "light" or

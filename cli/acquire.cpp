@@ -31,6 +31,7 @@ struct Options {
   int spp = 64;
   std::string max_bounces = "8";
   std::string pixel = "half";
+  std::string indirect = "traced";
   std::vector<std::string> set;
   double error = 0;
   bool variance = false;
@@ -82,6 +83,7 @@ AcquisitionSettings settings_of(const Options& options, const Session& session) 
   if (options.validate < 0)
     throw bad_input("--validate", fmt::format("is {}; expected at least 0", options.validate));
   settings.trace.error = options.error;
+  settings.trace.indirect_cache = options.indirect == "cache";
   settings.trace.texel_errors = options.variance;
   settings.trace.cut_height = options.alpha;
   settings.memory = options.memory;
@@ -120,6 +122,7 @@ void report(const AcquisitionReport& result, const Options& options, Session& se
                       {"bounce_rays", s.bounce_rays},
                       {"shadow_rays", s.shadow_rays},
                       {"table_rays", s.table_rays},
+                      {"cache_rays", s.cache_rays},
                       {"visibility_queries", s.visibility_queries},
                       {"answers_checked", s.answers_checked},
                       {"wrong_answers", s.wrong_answers},
@@ -246,6 +249,13 @@ void add_acquire(CLI::App& app, Session& session) {
   command->add_option("--pixel", options->pixel, "half or float")
       ->capture_default_str()
       ->check(CLI::IsMember({"half", "float"}));
+  command
+      ->add_option("--indirect", options->indirect,
+                   "traced, or cache: for Lambert materials alone; light reflected before comes "
+                   "from a cache a cell of the surface and light that all views share: several "
+                   "times faster, and slightly biased")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"traced", "cache"}));
   command->add_option("--set", options->set,
                       "KEY=VALUE overrides a key of the mesostructure, by its dotted path");
   command->add_option(

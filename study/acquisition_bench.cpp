@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <numeric>
+#include <span>
 
 #include "acquisition/naive_tracer.h"
 #include "acquisition/path_block.h"
@@ -216,6 +218,53 @@ AcquisitionBench bench_acquisition(const std::string& name, const Mesostructure&
   const auto structure = std::make_shared<const TraceableStructure>(mesostructure);
   measure_embree(structure, settings, bench);
   measure_speedup(structure, settings, bench);
+  return bench;
+}
+
+IndirectCacheBench bench_indirect_cache(const Mesostructure& mesostructure,
+                                        const AcquisitionSettings& settings,
+                                        const std::filesystem::path& folder, Progress& progress) {
+  AcquisitionSettings cached = settings;
+  cached.trace.indirect_cache = true;
+  IndirectCacheBench bench;
+  std::filesystem::remove_all(folder);
+  const AcquisitionReport report = acquire(mesostructure, cached, folder, progress);
+  std::filesystem::remove_all(folder);
+  bench.full_dataset_seconds = report.seconds;
+  bench.samples_per_second = static_cast<double>(report.statistics.paths) *
+                             static_cast<double>(report.lights) / report.seconds;
+  const auto structure = std::make_shared<const TraceableStructure>(mesostructure);
+  const std::vector<Direction> views = named_directions(settings.views);
+  const std::vector<Direction> lights = named_directions(settings.lights);
+  cached.trace.views = views.size();
+  TraceSettings traced = cached.trace;
+  traced.indirect_cache = false;
+  traced.spp *= 4;
+  const ViewTracer with(structure, lights, cached.trace);
+  const ViewTracer without(structure, lights, traced);
+  int pairs = 0;
+  for (std::size_t v = 0; v < views.size(); v += std::max<std::size_t>(1, views.size() / 8)) {
+    const TracedView a = with.trace(views[v], v);
+    const TracedView b = without.trace(views[v], mix_bits(v));
+    const std::size_t n = a.values.size() / lights.size();
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+      const auto mean = [&](const TracedView& view) {
+        const auto values = std::span(view.values).subspan(l * n, n);
+        return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n);
+      };
+      const double truth = mean(b);
+      if (!(truth > 0)) continue;
+      const double difference = mean(a) / truth - 1;
+      ++pairs;
+      bench.bias += difference;
+      bench.rms_difference += difference * difference;
+      bench.standard_error += std::hypot(a.standard_errors[l], b.standard_errors[l]) / truth;
+    }
+  }
+  if (pairs == 0) return bench;
+  bench.bias /= pairs;
+  bench.rms_difference = std::sqrt(bench.rms_difference / pairs);
+  bench.standard_error /= pairs;
   return bench;
 }
 

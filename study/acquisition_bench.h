@@ -34,6 +34,23 @@ struct AcquisitionBench {
 
 inline constexpr int naive_bench_spp = 16;
 
+/// What the cache of indirect light (`TraceSettings::indirect_cache`) gains and how far it is off.
+struct IndirectCacheBench {
+  double full_dataset_seconds = 0;  ///< from the structure to the written dataset
+  double samples_per_second = 0;
+  /// Of the tile's mean of a pair, relative, over some pairs: its mean (the bias), the root of its
+  /// mean square, and the standard error of one of them, that of the unbiased side included.
+  double bias = 0;
+  double rms_difference = 0;
+  double standard_error = 0;
+};
+
+/// Traces the whole dataset into `folder`, which is removed again, then some views with and without
+/// the cache. @throws Error  where a material is not Lambert.
+IndirectCacheBench bench_indirect_cache(const Mesostructure& mesostructure,
+                                        const AcquisitionSettings& settings,
+                                        const std::filesystem::path& folder, Progress& progress);
+
 /// Traces the whole dataset into `folder`, which is removed again, then measures the rest on parts.
 AcquisitionBench bench_acquisition(const std::string& name, const Mesostructure& mesostructure,
                                    const AcquisitionSettings& settings,

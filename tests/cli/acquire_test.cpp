@@ -146,3 +146,21 @@ TEST_CASE("a dataset several times as large as --memory is traced within it", "[
   CHECK(outcome.peak_kibibytes / 1024 < least + allowed + margin);
   CHECK(outcome.peak_kibibytes / 1024 > least / 2);
 }
+
+TEST_CASE("acquire --indirect cache is a dataset of its own, and for Lambert materials alone") {
+  const Place place;
+  const Outcome cached = place.acquire(with(small, {"--indirect", "cache", "--json"}));
+  INFO(cached.err);
+  REQUIRE(cached.exit_code == 0);
+  CHECK(nlohmann::json::parse(cached.out)["cache_rays"] > 0);
+  const auto provenance =
+      nlohmann::json::parse(weft::read_btf_header(place.folder.path / "a.btf").provenance);
+  CHECK(provenance["indirect"] == "cache");
+  CHECK(place.acquire(small).exit_code == 2);
+  const Place other;
+  const Outcome glossy = other.acquire(
+      with(small, {"--indirect", "cache", "--set", "materials.low.type=plastic", "--set",
+                   "materials.low.ior=1.5", "--set", "materials.low.alpha=0.2"}));
+  CHECK(glossy.exit_code == 2);
+  CHECK_THAT(glossy.err, Contains("--indirect cache") && Contains("lambert"));
+}

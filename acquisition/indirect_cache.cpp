@@ -1,0 +1,79 @@
+#include "acquisition/indirect_cache.h"
+
+#include <fmt/core.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <span>
+
+#include "acquisition/path_block.h"
+#include "btf/error.h"
+
+namespace weft {
+
+namespace {
+
+constexpr double most_bytes = 1e9;
+
+void check_lambert(const Mesostructure& mesostructure) {
+  if (!mesostructure.curves.segments.empty()) {
+    throw bad_input("--indirect cache", "keeps light on triangles; the structure has fibres",
+                    "use --indirect traced");
+  }
+  for (std::size_t m = 0; m < mesostructure.materials.size(); ++m) {
+    if (mesostructure.materials[m].kind() != Bsdf::Kind::lambert) {
+      throw bad_input("--indirect cache",
+                      fmt::format("keeps what looks the same from everywhere; material {} is not "
+                                  "of type lambert",
+                                  m),
+                      "use --indirect traced");
+    }
+  }
+}
+
+}  // namespace
+
+IndirectCache::IndirectCache(const ViewTracer& tracer) : groups_(tracer.lights().groups()) {
+  check_lambert(tracer.mesostructure());
+  const std::vector<Facet>& facets = tracer.facets();
+  std::vector<Cell> cells;
+  cells_.resize(facets.size());
+  for (std::uint32_t f = 0; f < facets.size(); ++f) {
+    const int side = cells_a_side(facets[f]);
+    cells_[f] = {cells.size(), static_cast<std::uint32_t>(side)};
+    cut({f, {Barycentric{0, 0}, Barycentric{1, 0}, Barycentric{0, 1}}}, side, cells);
+  }
+  const double bytes = static_cast<double>(cells.size() * groups_ * sizeof(RgbLanes));
+  if (bytes > most_bytes) {
+    throw bad_input("--indirect cache",
+                    fmt::format("would take {:.1f} GB; at most 1 is possible", bytes / 1e9),
+                    "use --indirect traced, or fewer lights or facets");
+  }
+  values_.resize(cells.size() * groups_);
+  const auto edge = static_cast<std::size_t>(PathBlock::edge_for(tracer.lights().size()));
+  const std::size_t at_once = edge * edge;
+  const std::size_t blocks = (cells.size() + at_once - 1) / at_once;
+  std::vector<std::int64_t> rays(blocks);
+  tbb::enumerable_thread_specific<PathBlock> workers([&] { return PathBlock(tracer); });
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+    PathBlock& block = workers.local();
+    const std::size_t first = b * at_once;
+    const std::size_t count = std::min(at_once, cells.size() - first);
+    block.trace_indirect(std::span(cells).subspan(first, count), first);
+    rays[b] = block.statistics().rays();
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t l = 0; l < tracer.lights().size(); ++l) {
+        RgbLanes& value = values_[(first + i) * groups_ + l / lanes];
+        const auto lane = static_cast<int>(l % lanes);
+        // A wrong answer's correction may leave a mean below zero.
+        value.r[lane] = static_cast<float>(std::max(0.0, block.mean(i, l, 0)));
+        value.g[lane] = static_cast<float>(std::max(0.0, block.mean(i, l, 1)));
+        value.b[lane] = static_cast<float>(std::max(0.0, block.mean(i, l, 2)));
+      }
+    }
+  });
+  for (const std::int64_t r : rays) rays_ += r;
+}
+
+}  // namespace weft

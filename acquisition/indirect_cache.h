@@ -1,0 +1,48 @@
+// What each cell of a Lambert surface reflects of the light that comes by way of other surfaces.
+//
+// A Lambert surface looks the same from everywhere, so what it reflects indirectly can be traced
+// once a cell and light, and serve every view. That is biased: within a cell it is constant, and
+// all views share its noise.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "acquisition/facet_cells.h"
+#include "tracer/lanes.h"
+
+namespace weft {
+
+class ViewTracer;
+
+class IndirectCache {
+ public:
+  /// Knows nothing.
+  IndirectCache() = default;
+  /// Traces from each cell as many paths as the tracer's settings ask for a texel, as far as they
+  /// say. @throws Error  where a material is not Lambert, the structure has fibres, or the cache
+  /// would take over 1 GB.
+  explicit IndirectCache(const ViewTracer& tracer);
+
+  bool empty() const { return values_.empty(); }
+  /// One a group of lights: B, in 1/sr, of indirect light alone, for a point of a facet seen from
+  /// its normal's side.
+  const RgbLanes* at(std::uint32_t facet, float u, float v) const {
+    const Cells& cells = cells_[facet];
+    Barycentric place{u, v};
+    return &values_[(cells.first + enter(static_cast<int>(cells.side), place)) * groups_];
+  }
+  std::int64_t rays() const { return rays_; }
+
+ private:
+  struct Cells {
+    std::size_t first = 0;
+    std::uint32_t side = 1;  // cells a side: side * side in all
+  };
+  std::size_t groups_ = 0;
+  std::vector<Cells> cells_;      // a facet
+  std::vector<RgbLanes> values_;  // [cell][group]
+  std::int64_t rays_ = 0;
+};
+
+}  // namespace weft
