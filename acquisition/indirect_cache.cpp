@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <span>
 
 #include "acquisition/path_block.h"
@@ -32,6 +33,13 @@ void check_lambert(const Mesostructure& mesostructure) {
   }
 }
 
+// Of each cell: together four times as many as one view's, as all views share their noise.
+int paths_a_cell(const TraceSettings& s, std::size_t cells) {
+  constexpr double views_worth = 4;
+  const double paths = views_worth * s.width * s.height * s.spp / static_cast<double>(cells);
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::clamp(paths, 4.0, 4096.0))));
+}
+
 }  // namespace
 
 IndirectCache::IndirectCache(const ViewTracer& tracer) : groups_(tracer.lights().groups()) {
@@ -53,6 +61,7 @@ IndirectCache::IndirectCache(const ViewTracer& tracer) : groups_(tracer.lights()
   values_.resize(cells.size() * groups_);
   const auto edge = static_cast<std::size_t>(PathBlock::edge_for(tracer.lights().size()));
   const std::size_t at_once = edge * edge;
+  const int paths = paths_a_cell(tracer.settings(), cells.size());
   const std::size_t blocks = (cells.size() + at_once - 1) / at_once;
   std::vector<std::int64_t> rays(blocks);
   tbb::enumerable_thread_specific<PathBlock> workers([&] { return PathBlock(tracer); });
@@ -60,7 +69,7 @@ IndirectCache::IndirectCache(const ViewTracer& tracer) : groups_(tracer.lights()
     PathBlock& block = workers.local();
     const std::size_t first = b * at_once;
     const std::size_t count = std::min(at_once, cells.size() - first);
-    block.trace_indirect(std::span(cells).subspan(first, count), first);
+    block.trace_indirect(std::span(cells).subspan(first, count), first, paths);
     rays[b] = block.statistics().rays();
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t l = 0; l < tracer.lights().size(); ++l) {

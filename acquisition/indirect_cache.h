@@ -19,9 +19,9 @@ class IndirectCache {
  public:
   /// Knows nothing.
   IndirectCache() = default;
-  /// Traces from each cell as many paths as the tracer's settings ask for a texel, as far as they
-  /// say. @throws Error  where a material is not Lambert, the structure has fibres, or the cache
-  /// would take over 1 GB.
+  /// Traces from all cells together four times the paths of a view, at least four from each, and
+  /// as far as the tracer's settings say. @throws Error  where a material is not Lambert, the
+  /// structure has fibres, or the cache would take over 1 GB.
   explicit IndirectCache(const ViewTracer& tracer);
 
   bool empty() const { return values_.empty(); }

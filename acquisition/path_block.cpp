@@ -88,13 +88,12 @@ void PathBlock::trace(const Direction& view, std::uint64_t view_key, int samples
   }
 }
 
-void PathBlock::trace_indirect(std::span<const Cell> cells, std::uint64_t first) {
-  const TraceSettings& s = tracer_.settings();
+void PathBlock::trace_indirect(std::span<const Cell> cells, std::uint64_t first, int samples) {
   columns_ = static_cast<int>(cells.size());
   rows_ = 1;
   for (std::size_t i = 0; i < cells.size(); ++i)
-    keys_[i] = hash_coordinates(s.seed, cell_key, first + i);
-  const auto spp = static_cast<std::uint32_t>(s.spp);
+    keys_[i] = hash_coordinates(tracer_.settings().seed, cell_key, first + i);
+  const auto spp = static_cast<std::uint32_t>(samples);
   clear(cells.size(), std::clamp(spp / most_groups, 1U, most_samples / most_groups));
   const std::uint32_t wave = group_size_ * most_groups;
   for (first_sample_ = 0; first_sample_ < spp; first_sample_ += wave) {

@@ -37,11 +37,11 @@ class PathBlock {
   void trace(const Direction& view, std::uint64_t view_key, int samples,
              std::span<const double> error_scales, int left, int top);
 
-  /// Traces the settings' number of paths that leave each of the cells, at most edge * edge; a mean
+  /// Traces `samples` paths that leave each of the cells, at most edge * edge; a mean
   /// is then what the cell reflects towards its front of light that has been reflected before. The
   /// "texels" of what follows are the cells.
   /// @param first  the number of the first cell, for the random numbers.
-  void trace_indirect(std::span<const Cell> cells, std::uint64_t first);
+  void trace_indirect(std::span<const Cell> cells, std::uint64_t first, int samples);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
