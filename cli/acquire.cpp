@@ -252,8 +252,8 @@ void add_acquire(CLI::App& app, Session& session) {
   command
       ->add_option("--indirect", options->indirect,
                    "traced, or cache: for Lambert materials alone; light reflected before comes "
-                   "from a cache a cell of the surface and light that all views share: several "
-                   "times faster, and slightly biased")
+                   "from a cache a cell of the surface and light that all views share: faster, "
+                   "and slightly biased")
       ->capture_default_str()
       ->check(CLI::IsMember({"traced", "cache"}));
   command->add_option("--set", options->set,
