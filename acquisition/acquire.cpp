@@ -131,8 +131,8 @@ AcquisitionReport acquire_shard(const Mesostructure& mesostructure,
   report.views_kept -= missing.size();
   // What is refused is refused before the folder is made, and a tracer costs more than a look.
   std::unique_ptr<const ViewTracer> tracer;
-  if (!missing.empty()) tracer.reset(new ViewTracer(tracer_for(mesostructure, settings, header)));
-  if (tracer) {
+  if (!missing.empty()) {
+    tracer.reset(new ViewTracer(tracer_for(mesostructure, settings, header)));
     report.statistics.table_rays = tracer->visibility().rays();
     report.statistics.cache_rays = tracer->indirect_cache().rays();
   }

@@ -11,13 +11,31 @@ namespace {
 constexpr float cell_size = 1.0F / 96;  // tiles; longest edge of a cell
 constexpr int most_cells_a_side = 128;
 
-}  // namespace
-
 int cells_a_side(const Facet& facet) {
   if (facet.degenerate()) return 1;
   const float longest = std::max(
       {facet.edge_u.length(), facet.edge_v.length(), (facet.edge_u - facet.edge_v).length()});
   return std::clamp(static_cast<int>(std::ceil(longest / cell_size)), 1, most_cells_a_side);
+}
+
+}  // namespace
+
+FacetCells::FacetCells(const std::vector<Facet>& facets) {
+  wholes_.reserve(facets.size());
+  for (const Facet& facet : facets) {
+    const int side = cells_a_side(facet);
+    wholes_.push_back({count_, side});
+    count_ += static_cast<std::uint32_t>(side * side);
+  }
+}
+
+std::vector<Cell> FacetCells::all() const {
+  constexpr std::array<Barycentric, 3> corners{Barycentric{0, 0}, Barycentric{1, 0},
+                                               Barycentric{0, 1}};
+  std::vector<Cell> cells;
+  cells.reserve(count_);
+  for (std::uint32_t f = 0; f < wholes_.size(); ++f) cut({f, corners}, wholes_[f].side, cells);
+  return cells;
 }
 
 Barycentric point_of(const Cell& cell, float a, float b) {
@@ -27,20 +45,13 @@ Barycentric point_of(const Cell& cell, float a, float b) {
 }
 
 void cut(const Cell& whole, int side, std::vector<Cell>& cells) {
-  const auto at = [&](int i, int j) {
-    return point_of(whole, static_cast<float>(i) / static_cast<float>(side),
-                    static_cast<float>(j) / static_cast<float>(side));
+  const auto at = [&](const std::array<int, 2>& place) {
+    return point_of(whole, static_cast<float>(place[0]) / static_cast<float>(side),
+                    static_cast<float>(place[1]) / static_cast<float>(side));
   };
-  for (int i = 0; i < side; ++i) {
-    for (int position = 0; position < 2 * (side - i) - 1; ++position) {
-      const int j = position / 2;
-      if (position % 2 == 0) {
-        cells.push_back({whole.facet, {at(i, j), at(i + 1, j), at(i, j + 1)}});
-      } else {
-        cells.push_back({whole.facet, {at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)}});
-      }
-    }
-  }
+  for_each_cell(side, [&](const auto& p, const auto& q, const auto& r) {
+    cells.push_back({whole.facet, {at(p), at(q), at(r)}});
+  });
 }
 
 Barycentric random_point(const Cell& cell, std::size_t number, int round) {
@@ -52,14 +63,6 @@ Barycentric random_point(const Cell& cell, std::size_t number, int round) {
   if (quarter == 0) return point_of(cell, (1 - at[0]) / 2, (1 - at[1]) / 2);
   return point_of(cell, (at[0] + (quarter == 2 ? 1.0F : 0.0F)) / 2,
                   (at[1] + (quarter == 3 ? 1.0F : 0.0F)) / 2);
-}
-
-std::uint64_t place_key(const Vec3& point) {
-  constexpr double steps = 1e6;
-  const auto wrapped = [&](float x) {
-    return std::llround((x - std::floor(x)) * steps) % static_cast<std::int64_t>(steps);
-  };
-  return hash_coordinates(wrapped(point.x), wrapped(point.y), std::llround(point.z * steps));
 }
 
 }  // namespace weft

@@ -1,4 +1,4 @@
-// Facets cut into small triangles, for which a visibility table keeps its answers.
+// Facets cut into small triangles, for each of which something is kept.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +20,19 @@ struct Cell {
   std::array<Barycentric, 3> corners;
 };
 
-/// Into how many cells a side a facet is cut, so that no edge is longer than 1/96 of a tile; side *
-/// side in all.
-int cells_a_side(const Facet& facet);
+/// Hands out the corners of the side * side cells that a triangle is cut into, in the order of
+/// `enter`: `take(p, q, r)`, each {i, j} for the place with weights i / side and j / side of the
+/// triangle's second and third corner.
+template <typename Take>
+void for_each_cell(int side, const Take& take) {
+  using Place = std::array<int, 2>;
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; i + j < side; ++j) {
+      take(Place{i, j}, Place{i + 1, j}, Place{i, j + 1});
+      if (i + j + 1 < side) take(Place{i + 1, j + 1}, Place{i, j + 1}, Place{i + 1, j});
+    }
+  }
+}
 
 /// Appends the side * side cells that `whole` is cut into, in the order of `enter`.
 void cut(const Cell& whole, int side, std::vector<Cell>& cells);
@@ -49,7 +59,30 @@ Barycentric random_point(const Cell& cell, std::size_t number, int round);
 /// The point of the cell with weights 1 - a - b, a and b of its corners.
 Barycentric point_of(const Cell& cell, float a, float b);
 
-/// One number for what is the same place of the endless surface, to 1e-6 tiles.
-std::uint64_t place_key(const Vec3& point);
+/// The cells of all facets, numbered in the order of the facets, then of `enter`. A facet is cut so
+/// that no edge of a cell is longer than 1/96 of a tile, but into 128 a side at most.
+class FacetCells {
+ public:
+  /// Of no facet.
+  FacetCells() = default;
+  explicit FacetCells(const std::vector<Facet>& facets);
+
+  std::size_t facets() const { return wholes_.size(); }
+  std::size_t count() const { return count_; }
+  std::vector<Cell> all() const;
+  /// The number of the cell of a facet that `at` lies in; `at` becomes the place in that cell.
+  std::uint32_t find(std::uint32_t facet, Barycentric& at) const {
+    const Whole& whole = wholes_[facet];
+    return whole.first + (whole.side == 1 ? 0 : enter(whole.side, at));
+  }
+
+ private:
+  struct Whole {
+    std::uint32_t first;
+    std::int32_t side;  // side * side cells in all
+  };
+  std::vector<Whole> wholes_;
+  std::uint32_t count_ = 0;
+};
 
 }  // namespace weft

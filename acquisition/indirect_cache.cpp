@@ -17,22 +17,6 @@ namespace {
 
 constexpr double most_bytes = 1e9;
 
-void check_lambert(const Mesostructure& mesostructure) {
-  if (!mesostructure.curves.segments.empty()) {
-    throw bad_input("--indirect cache", "keeps light on triangles; the structure has fibres",
-                    "use --indirect traced");
-  }
-  for (std::size_t m = 0; m < mesostructure.materials.size(); ++m) {
-    if (mesostructure.materials[m].kind() != Bsdf::Kind::lambert) {
-      throw bad_input("--indirect cache",
-                      fmt::format("keeps what looks the same from everywhere; material {} is not "
-                                  "of type lambert",
-                                  m),
-                      "use --indirect traced");
-    }
-  }
-}
-
 // Of each cell: together four times as many as one view's, as all views share their noise.
 int paths_a_cell(const TraceSettings& s, std::size_t cells) {
   constexpr double views_worth = 4;
@@ -42,25 +26,32 @@ int paths_a_cell(const TraceSettings& s, std::size_t cells) {
 
 }  // namespace
 
-IndirectCache::IndirectCache(const ViewTracer& tracer) : groups_(tracer.lights().groups()) {
-  check_lambert(tracer.mesostructure());
-  const std::vector<Facet>& facets = tracer.facets();
-  std::vector<Cell> cells;
-  cells_.resize(facets.size());
-  for (std::uint32_t f = 0; f < facets.size(); ++f) {
-    const int side = cells_a_side(facets[f]);
-    cells_[f] = {cells.size(), static_cast<std::uint32_t>(side)};
-    cut({f, {Barycentric{0, 0}, Barycentric{1, 0}, Barycentric{0, 1}}}, side, cells);
+std::optional<std::string> IndirectCache::obstacle(const Mesostructure& mesostructure) {
+  if (!mesostructure.curves.segments.empty()) return "the structure has fibres";
+  for (std::size_t m = 0; m < mesostructure.materials.size(); ++m) {
+    if (mesostructure.materials[m].kind() != Bsdf::Kind::lambert)
+      return fmt::format("material '{}' is not of type lambert",
+                         mesostructure.mesh.material_names[m]);
   }
-  const double bytes = static_cast<double>(cells.size() * groups_ * sizeof(RgbLanes));
+  return std::nullopt;
+}
+
+IndirectCache::IndirectCache(const ViewTracer& tracer)
+    : groups_(tracer.lights().groups()), cells_(tracer.facets()) {
+  if (const auto obstacle = IndirectCache::obstacle(tracer.mesostructure())) {
+    throw bad_input("--indirect cache",
+                    "keeps what triangles reflect alike to everywhere; " + *obstacle,
+                    "use --indirect traced");
+  }
+  const double bytes = static_cast<double>(cells_.count() * groups_ * sizeof(RgbLanes));
   if (bytes > most_bytes) {
     throw bad_input("--indirect cache",
                     fmt::format("would take {:.1f} GB; at most 1 is possible", bytes / 1e9),
                     "use --indirect traced, or fewer lights or facets");
   }
+  const std::vector<Cell> cells = cells_.all();
   values_.resize(cells.size() * groups_);
-  const auto edge = static_cast<std::size_t>(PathBlock::edge_for(tracer.lights().size()));
-  const std::size_t at_once = edge * edge;
+  const std::size_t at_once = PathBlock::texels_for(tracer.lights().size());
   const int paths = paths_a_cell(tracer.settings(), cells.size());
   const std::size_t blocks = (cells.size() + at_once - 1) / at_once;
   std::vector<std::int64_t> rays(blocks);
@@ -76,9 +67,9 @@ IndirectCache::IndirectCache(const ViewTracer& tracer) : groups_(tracer.lights()
         RgbLanes& value = values_[(first + i) * groups_ + l / lanes];
         const auto lane = static_cast<int>(l % lanes);
         // A wrong answer's correction may leave a mean below zero.
-        value.r[lane] = static_cast<float>(std::max(0.0, block.mean(i, l, 0)));
-        value.g[lane] = static_cast<float>(std::max(0.0, block.mean(i, l, 1)));
-        value.b[lane] = static_cast<float>(std::max(0.0, block.mean(i, l, 2)));
+        value.r[lane] = static_cast<float>(std::max(0.0, block.sums().mean(i, l, 0)));
+        value.g[lane] = static_cast<float>(std::max(0.0, block.sums().mean(i, l, 1)));
+        value.b[lane] = static_cast<float>(std::max(0.0, block.sums().mean(i, l, 2)));
       }
     }
   });

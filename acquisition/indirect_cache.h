@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "acquisition/facet_cells.h"
@@ -14,6 +16,7 @@
 namespace weft {
 
 class ViewTracer;
+struct Mesostructure;
 
 class IndirectCache {
  public:
@@ -24,23 +27,21 @@ class IndirectCache {
   /// structure has fibres, or the cache would take over 1 GB.
   explicit IndirectCache(const ViewTracer& tracer);
 
+  /// What about a structure makes a cache impossible; nothing where it is possible.
+  static std::optional<std::string> obstacle(const Mesostructure& mesostructure);
+
   bool empty() const { return values_.empty(); }
   /// One a group of lights: B, in 1/sr, of indirect light alone, for a point of a facet seen from
   /// its normal's side.
   const RgbLanes* at(std::uint32_t facet, float u, float v) const {
-    const Cells& cells = cells_[facet];
     Barycentric place{u, v};
-    return &values_[(cells.first + enter(static_cast<int>(cells.side), place)) * groups_];
+    return &values_[cells_.find(facet, place) * groups_];
   }
   std::int64_t rays() const { return rays_; }
 
  private:
-  struct Cells {
-    std::size_t first = 0;
-    std::uint32_t side = 1;  // cells a side: side * side in all
-  };
   std::size_t groups_ = 0;
-  std::vector<Cells> cells_;      // a facet
+  FacetCells cells_;
   std::vector<RgbLanes> values_;  // [cell][group]
   std::int64_t rays_ = 0;
 };

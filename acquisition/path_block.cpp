@@ -35,11 +35,13 @@ int PathBlock::edge_for(std::size_t lights) {
   return lights <= 768 ? 4 : 2;
 }
 
-std::size_t PathBlock::bytes_for(std::size_t lights) {
+std::size_t PathBlock::texels_for(std::size_t lights) {
   const auto edge = static_cast<std::size_t>(edge_for(lights));
-  const std::size_t values = edge * edge * ((lights + lanes - 1) / lanes) * lanes;
-  // Per value: a wave's sums and the double ones in three channels, and the grey ones.
-  return values * (3 * (most_groups * sizeof(float) + 2 * sizeof(double)) + sizeof(double));
+  return edge * edge;
+}
+
+std::size_t PathBlock::bytes_for(std::size_t lights) {
+  return TexelSums::bytes_for(texels_for(lights), lights);
 }
 
 PathBlock::PathBlock(const ViewTracer& tracer, PacketLog* log)
@@ -47,14 +49,9 @@ PathBlock::PathBlock(const ViewTracer& tracer, PacketLog* log)
       log_(log),
       groups_(tracer.lights().groups()),
       first_connections_(tracer.lights().size()),
-      later_connections_(tracer.lights().size()) {
-  const auto edge = static_cast<std::size_t>(edge_for(tracer.lights().size()));
-  const std::size_t values = edge * edge * groups_ * 3;
-  wave_.resize(values * most_groups);
-  sums_.resize(values * lanes);
-  squares_.resize(values * lanes);
-  grey_squares_.resize(values / 3 * lanes);
-  keys_.resize(edge * edge);
+      later_connections_(tracer.lights().size()),
+      sums_(texels_for(tracer.lights().size()), tracer.lights().size()) {
+  keys_.resize(texels_for(tracer.lights().size()));
 }
 
 void PathBlock::trace(const Direction& view, std::uint64_t view_key, int samples,
@@ -73,19 +70,7 @@ void PathBlock::trace(const Direction& view, std::uint64_t view_key, int samples
       keys_[static_cast<std::size_t>(y) * columns_ + x] = hash_coordinates(s.seed, view_key, texel);
     }
   }
-  const auto spp = static_cast<std::uint32_t>(samples);
-  const bool adaptive = !error_scales.empty();
-  clear(
-      static_cast<std::size_t>(columns_) * rows_,
-      std::clamp(spp / most_groups, 1U, (adaptive ? samples_a_check : most_samples) / most_groups));
-  const std::uint32_t wave = group_size_ * most_groups;
-  for (first_sample_ = 0; first_sample_ < spp && !active_.empty(); first_sample_ += wave) {
-    const std::uint32_t end = std::min(first_sample_ + wave, spp);
-    start_paths(end);
-    follow_paths(false);
-    fold_wave(end);
-    if (adaptive) drop_settled(error_scales, end == spp);
-  }
+  trace_waves(static_cast<std::size_t>(columns_) * rows_, samples, error_scales, {});
 }
 
 void PathBlock::trace_indirect(std::span<const Cell> cells, std::uint64_t first, int samples) {
@@ -93,29 +78,33 @@ void PathBlock::trace_indirect(std::span<const Cell> cells, std::uint64_t first,
   rows_ = 1;
   for (std::size_t i = 0; i < cells.size(); ++i)
     keys_[i] = hash_coordinates(tracer_.settings().seed, cell_key, first + i);
-  const auto spp = static_cast<std::uint32_t>(samples);
-  clear(cells.size(), std::clamp(spp / most_groups, 1U, most_samples / most_groups));
-  const std::uint32_t wave = group_size_ * most_groups;
-  for (first_sample_ = 0; first_sample_ < spp; first_sample_ += wave) {
-    const std::uint32_t end = std::min(first_sample_ + wave, spp);
-    start_paths_on(cells, end);
-    follow_paths(true);
-    fold_wave(end);
-  }
+  trace_waves(cells.size(), samples, {}, cells);
 }
 
-void PathBlock::clear(std::size_t texels, std::uint32_t group_size) {
-  std::fill(sums_.begin(), sums_.end(), 0.0);
-  std::fill(squares_.begin(), squares_.end(), 0.0);
-  std::fill(grey_squares_.begin(), grey_squares_.end(), 0.0);
+void PathBlock::trace_waves(std::size_t texels, int samples, std::span<const double> error_scales,
+                            std::span<const Cell> cells) {
+  const auto spp = static_cast<std::uint32_t>(samples);
+  const bool adaptive = !error_scales.empty();
+  const bool from_surface = !cells.empty();
+  const std::uint32_t most = adaptive ? samples_a_check : most_samples;
+  sums_.clear(texels, std::clamp(spp, TexelSums::most_groups, most) / TexelSums::most_groups);
   statistics_ = {};
   statistics_.texels = static_cast<std::int64_t>(texels);
   active_.resize(texels);
   std::iota(active_.begin(), active_.end(), 0U);
-  samples_.assign(texels, 0);
-  sample_groups_.assign(texels, 0);
   covered_.assign(texels, 0);
-  group_size_ = group_size;
+  for (first_sample_ = 0; first_sample_ < spp && !active_.empty();
+       first_sample_ += sums_.wave_size()) {
+    const std::uint32_t end = std::min(first_sample_ + sums_.wave_size(), spp);
+    if (from_surface) {
+      start_paths_on(cells, end);
+    } else {
+      start_paths(end);
+    }
+    follow_paths(from_surface);
+    sums_.fold(active_, end - first_sample_);
+    if (adaptive) drop_settled(error_scales, end == spp);
+  }
 }
 
 std::array<float, 2> PathBlock::stratified(const Path& path, std::uint64_t pair) const {
@@ -239,8 +228,7 @@ void PathBlock::look_up(std::size_t first) {
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Path& path = paths_[first + i];
-    answers_[i] = path.facet < facets ? tracer_.visibility().at(path.facet, path.u, path.v)
-                                      : tracer_.visibility().unknown();
+    answers_[i] = tracer_.visibility().at(path.facet, path.u, path.v);
     __builtin_prefetch(answers_[i]);
     __builtin_prefetch(answers_[i] + groups_ - 1);
   }
@@ -291,8 +279,8 @@ void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& orig
           hash_coordinates(keys_[path.texel], check_pair(bounce), path.sample) >> 32) %
       check_every;
   ShadowQueue& queue = bounce == 0 ? first_connections_ : later_connections_;
-  const std::uint32_t sums = slot(path);
-  FloatLanes* wave = &wave_[sums * groups_ * 3];
+  const std::uint32_t slot = this->slot(path);
+  FloatLanes* wave = sums_.wave(slot, 0);
   for (std::size_t g = 0; g < groups_; ++g, wave += 3) {
     const Vec3Lanes& group = lights.group(g);
     Vec3Lanes local{};
@@ -319,7 +307,7 @@ void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& orig
     for (unsigned left = asked & ~known; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       queue.add(g * lanes + static_cast<std::size_t>(i),
-                {origin, sums, ShadowQueue::Answer::unknown, value.r[i], value.g[i], value.b[i]});
+                {origin, slot, ShadowQueue::Answer::unknown, value.r[i], value.g[i], value.b[i]});
     }
     // Light l is checked where l % 256 is the number drawn: each with a chance of 1 / 256.
     const std::size_t first = g * lanes % check_every;
@@ -328,7 +316,7 @@ void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& orig
       if (((asked & known) >> i & 1) != 0) {
         queue.add(
             g * lanes + static_cast<std::size_t>(i),
-            {origin, sums,
+            {origin, slot,
              (visible >> i & 1) != 0 ? ShadowQueue::Answer::visible : ShadowQueue::Answer::hidden,
              value.r[i], value.g[i], value.b[i]});
       }
@@ -337,7 +325,7 @@ void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& orig
 }
 
 void PathBlock::add_indirect(const Path& path, const RgbLanes* indirect) {
-  FloatLanes* wave = &wave_[slot(path) * groups_ * 3];
+  FloatLanes* wave = sums_.wave(slot(path), 0);
   for (std::size_t g = 0; g < groups_; ++g, wave += 3) {
     wave[0] += indirect[g].r * path.throughput.x;
     wave[1] += indirect[g].g * path.throughput.y;
@@ -347,7 +335,7 @@ void PathBlock::add_indirect(const Path& path, const RgbLanes* indirect) {
 
 void PathBlock::trace_connections(ShadowQueue& queue, Coherence coherence) {
   const auto add = [&](std::size_t light, const ShadowQueue::Connection& c, float weight) {
-    FloatLanes* wave = &wave_[(c.slot * groups_ + light / lanes) * 3];
+    FloatLanes* wave = sums_.wave(c.slot, light / lanes);
     wave[0][light % lanes] += weight * c.r;
     wave[1][light % lanes] += weight * c.g;
     wave[2][light % lanes] += weight * c.b;
@@ -390,62 +378,13 @@ bool PathBlock::scatter(Path& path, const Vertex& vertex, int bounce) {
   return max_component(path.throughput) > 0;
 }
 
-void PathBlock::fold_wave(std::uint32_t end_sample) {
-  const std::uint32_t samples = end_sample - first_sample_;
-  const std::uint32_t groups = (samples + group_size_ - 1) / group_size_;
-  for (const std::uint32_t texel : active_) {
-    samples_[texel] += samples;
-    sample_groups_[texel] += groups;
-    for (std::uint32_t s = 0; s < groups; ++s) {
-      const double inverse = 1.0 / std::min(group_size_, samples - s * group_size_);
-      for (std::size_t g = 0; g < groups_; ++g) {
-        FloatLanes* wave = &wave_[((texel * most_groups + s) * groups_ + g) * 3];
-        double* sums = &sums_[(texel * groups_ + g) * 3 * lanes];
-        double* squares = &squares_[(texel * groups_ + g) * 3 * lanes];
-        double* grey_squares = &grey_squares_[(texel * groups_ + g) * lanes];
-        for (std::size_t k = 0; k < lanes; ++k) {
-          double grey = 0;
-          for (std::size_t c = 0; c < 3; ++c) {
-            const double value = wave[c][k];
-            sums[c * lanes + k] += value;
-            squares[c * lanes + k] += value * value * inverse;
-            grey += value / 3;
-          }
-          grey_squares[k] += grey * grey * inverse;
-        }
-        std::fill_n(wave, 3, FloatLanes{});
-      }
-    }
-  }
-}
-
-// From sum over groups of S^2 / n, S a group's sum of n samples, and the sum of all N samples.
-double PathBlock::variance_of(std::size_t texel, double squares, double sum) const {
-  const double n = samples_[texel];
-  return std::max(0.0, squares - sum * sum / n) / (sample_groups_[texel] - 1.0) / n;
-}
-
-double PathBlock::variance(std::size_t texel, std::size_t light, int channel) const {
-  const std::size_t i = place(texel, light, channel);
-  return variance_of(texel, squares_[i], sums_[i]);
-}
-
-double PathBlock::grey_mean(std::size_t texel, std::size_t light) const {
-  return (mean(texel, light, 0) + mean(texel, light, 1) + mean(texel, light, 2)) / 3;
-}
-
-double PathBlock::grey_variance(std::size_t texel, std::size_t light) const {
-  return variance_of(texel, grey_squares_[texel * groups_ * lanes + light],
-                     grey_mean(texel, light) * samples_[texel]);
-}
-
 void PathBlock::drop_settled(std::span<const double> error_scales, bool last) {
   const double target = tracer_.settings().error;
   const auto squares = static_cast<double>(error_scales.size());
   std::erase_if(active_, [&](std::uint32_t texel) {
     double sum = 0;
     for (std::size_t l = 0; l < error_scales.size(); ++l)
-      sum += grey_variance(texel, l) / (error_scales[l] * error_scales[l]);
+      sum += sums_.grey_variance(texel, l) / (error_scales[l] * error_scales[l]);
     return sum < target * target * squares;
   });
   if (last) statistics_.unsettled += static_cast<std::int64_t>(active_.size());

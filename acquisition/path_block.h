@@ -13,6 +13,7 @@
 
 #include "acquisition/packet_log.h"
 #include "acquisition/shadow_queue.h"
+#include "acquisition/texel_sums.h"
 #include "acquisition/view_tracer.h"
 #include "tracer/frame.h"
 
@@ -23,6 +24,9 @@ class PathBlock {
  public:
   /// Texels a side of a block: fewer where the lights are many, so that the sums stay in the cache.
   static int edge_for(std::size_t lights);
+
+  /// The square of that: the most texels, or cells, at once.
+  static std::size_t texels_for(std::size_t lights);
 
   /// Memory of one block.
   static std::size_t bytes_for(std::size_t lights);
@@ -37,33 +41,23 @@ class PathBlock {
   void trace(const Direction& view, std::uint64_t view_key, int samples,
              std::span<const double> error_scales, int left, int top);
 
-  /// Traces `samples` paths that leave each of the cells, at most edge * edge; a mean
-  /// is then what the cell reflects towards its front of light that has been reflected before. The
+  /// Traces `samples` paths that leave each of the cells, at most `texels_for`; a mean is then
+  /// what the cell reflects towards its front of light that has been reflected before. The
   /// "texels" of what follows are the cells.
   /// @param first  the number of the first cell, for the random numbers.
   void trace_indirect(std::span<const Cell> cells, std::uint64_t first, int samples);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
-  /// Mean over the samples of a texel of the block (row * columns + column), for a light and a
-  /// channel.
-  double mean(std::size_t texel, std::size_t light, int channel) const {
-    return sums_[place(texel, light, channel)] / samples_[texel];
-  }
-  /// Variance of that mean, from the spread of groups of samples; conservative, as stratification
-  /// between groups is not credited. Needs two samples.
-  double variance(std::size_t texel, std::size_t light, int channel) const;
-  /// The same of the mean of RGB.
-  double grey_variance(std::size_t texel, std::size_t light) const;
+  /// Of the block's texels (row * columns + column).
+  const TexelSums& sums() const { return sums_; }
   /// Share of the texel's rays that hit above `TraceSettings::cut_height`.
   float coverage(std::size_t texel) const {
-    return static_cast<float>(covered_[texel]) / static_cast<float>(samples_[texel]);
+    return static_cast<float>(covered_[texel]) / static_cast<float>(sums_.samples(texel));
   }
   const TraceStatistics& statistics() const { return statistics_; }
 
  private:
-  static constexpr std::uint32_t most_groups = 4;  // of samples, in a wave
-
   struct Path {
     Rgb throughput;
     Vec3 direction;       // of the ray that arrives
@@ -83,20 +77,16 @@ class PathBlock {
     const RgbLanes* indirect = nullptr;  // light reflected before; null where it is to be traced
   };
 
-  std::size_t place(std::size_t texel, std::size_t light, int channel) const {
-    return ((texel * groups_ + light / lanes) * 3 + static_cast<std::size_t>(channel)) * lanes +
-           light % lanes;
-  }
-
   // Two numbers of a pair of dimensions, for a path.
   std::array<float, 2> stratified(const Path& path, std::uint64_t pair) const;
   std::array<float, 2> random(const Path& path, std::uint64_t pair) const;
   // Which sums of the wave a path adds to.
   std::uint32_t slot(const Path& path) const {
-    return path.texel * most_groups + (path.sample - first_sample_) / group_size_;
+    return sums_.slot(path.texel, path.sample - first_sample_);
   }
-  // Forgets the last call.
-  void clear(std::size_t texels, std::uint32_t group_size);
+  // Traces texels by paths from the eye, or cells (where there are any) by paths that leave them.
+  void trace_waves(std::size_t texels, int samples, std::span<const double> error_scales,
+                   std::span<const Cell> cells);
   void start_paths(std::uint32_t end_sample);
   void start_paths_on(std::span<const Cell> cells, std::uint32_t end_sample);
   // Traces the ray that `path` is to follow, packet by packet; keeps the paths that hit.
@@ -117,11 +107,8 @@ class PathBlock {
   void trace_connections(ShadowQueue& queue, Coherence coherence);
   // Draws where a path goes on. False where it ends.
   bool scatter(Path& path, const Vertex& vertex, int bounce);
-  void fold_wave(std::uint32_t end_sample);
   // Keeps the texels that need more samples.
   void drop_settled(std::span<const double> error_scales, bool last);
-  double grey_mean(std::size_t texel, std::size_t light) const;
-  double variance_of(std::size_t texel, double squares, double sum) const;
 
   const ViewTracer& tracer_;
   PacketLog* log_;
@@ -131,11 +118,8 @@ class PathBlock {
   int top_ = 0;
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<std::uint32_t> active_;         // texels that get more samples
-  std::vector<std::uint32_t> samples_;        // of each texel, so far
-  std::vector<std::uint32_t> sample_groups_;  // the same in groups
+  std::vector<std::uint32_t> active_;  // texels that get more samples
   std::vector<std::uint32_t> covered_;
-  std::uint32_t group_size_ = 1;     // samples
   std::uint32_t first_sample_ = 0;   // of the wave
   std::vector<std::uint64_t> keys_;  // of each texel, for its random numbers
   std::vector<Path> paths_;
@@ -145,11 +129,8 @@ class PathBlock {
   HitPacket packet_{};
   std::size_t sent_count_ = 0;
   ShadowQueue first_connections_;
-  ShadowQueue later_connections_;     // of paths that were reflected before
-  std::vector<FloatLanes> wave_;      // [slot][group][channel]
-  std::vector<double> sums_;          // [texel][group][channel][lane]
-  std::vector<double> squares_;       // of the sample groups' sums, over their samples
-  std::vector<double> grey_squares_;  // [texel][group][lane], of the mean of RGB
+  ShadowQueue later_connections_;  // of paths that were reflected before
+  TexelSums sums_;
   TraceStatistics statistics_;
 };
 

@@ -63,14 +63,14 @@ constexpr double table_bytes = 512e6;
 
 VisibilityTable table_for(const std::vector<Facet>& facets, const LightSet& lights,
                           const PeriodicScene& scene, const TraceSettings& s) {
-  const auto cells = static_cast<double>(VisibilityTable::cells_of(facets));
+  FacetCells cells(facets);
   const double paths = static_cast<double>(s.views) * s.width * s.height * s.spp;
-  const double bytes =
-      cells * static_cast<double>(lights.groups() * sizeof(VisibilityTable::Answer));
-  const double rays = paths / (paths_a_ray * cells);
+  const auto bytes =
+      static_cast<double>(cells.count() * lights.groups() * sizeof(VisibilityTable::Answer));
+  const double rays = paths / (paths_a_ray * static_cast<double>(cells.count()));
   if (!s.table || facets.empty() || rays < VisibilityTable::least_rays || bytes > table_bytes)
-    return {facets, lights};
-  return {facets, lights, scene, static_cast<int>(std::min(rays, 1e3))};
+    return VisibilityTable(lights);
+  return {facets, std::move(cells), lights, scene, static_cast<int>(std::min(rays, 1e3))};
 }
 
 }  // namespace
@@ -164,13 +164,14 @@ TracedView ViewTracer::trace_blocks(const Direction& view, std::uint64_t view_ke
         for (std::size_t l = 0; l < lights_.size(); ++l) {
           for (int c = 0; c < 3; ++c) {
             const std::size_t i = 3 * (l * texels + place) + static_cast<std::size_t>(c);
-            const double mean = block.mean(texel, l, c);
+            const double mean = block.sums().mean(texel, l, c);
             statistics[b].negative += mean < 0 ? 1 : 0;
             traced.values[i] = mean < 0 ? 0.0F : static_cast<float>(mean);
             if (settings_.texel_errors)
-              traced.texel_errors[i] = static_cast<float>(std::sqrt(block.variance(texel, l, c)));
+              traced.texel_errors[i] =
+                  static_cast<float>(std::sqrt(block.sums().variance(texel, l, c)));
           }
-          if (with_errors) variances[b][l] += block.grey_variance(texel, l);
+          if (with_errors) variances[b][l] += block.sums().grey_variance(texel, l);
         }
       }
     }

@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <array>
 #include <atomic>
+#include <bit>
 
 namespace weft {
 
@@ -26,13 +28,15 @@ VisibilityInquiry::Round operator+(const VisibilityInquiry::Round& a,
 
 VisibilityInquiry::VisibilityInquiry(const std::vector<Facet>& facets, const LightSet& lights,
                                      const PeriodicScene& scene, std::vector<Cell> cells,
-                                     CellCorners corners, std::vector<std::uint16_t> wanted)
+                                     CellCorners corners, std::vector<std::uint16_t> wanted,
+                                     std::vector<VisibilityEvidence> around)
     : facets_(facets),
       lights_(lights),
       scene_(scene),
       cells_(std::move(cells)),
       corners_(std::move(corners)),
       wanted_(std::move(wanted)),
+      around_(std::move(around)),
       groups_(lights.groups()),
       evidence_(cells_.size() * groups_) {}
 
@@ -98,7 +102,7 @@ VisibilityInquiry::Round VisibilityInquiry::ask_packet(
 }
 
 void VisibilityInquiry::agree(std::vector<VisibilityAnswer>& answers) const {
-  std::vector<VisibilityEvidence> around = corners_.evidence;
+  std::vector<VisibilityEvidence> around = around_;
   around.resize(corners_.count * groups_);
   tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t c) {
     for (const std::uint32_t corner : corners_.of_cell[c]) {

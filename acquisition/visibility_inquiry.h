@@ -1,11 +1,10 @@
 // Asks what cells see of each light, ray by ray, and says what is certain so far.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "acquisition/facet_cells.h"
+#include "acquisition/cell_corners.h"
 #include "acquisition/light_set.h"
 #include "acquisition/periodic_scene.h"
 
@@ -23,21 +22,14 @@ struct VisibilityEvidence {
   std::uint16_t hidden = 0;  ///< lights that some point does not see
 };
 
-/// The corners that cells share.
-struct CellCorners {
-  std::vector<std::array<std::uint32_t, 3>> of_cell;
-  std::size_t count = 0;
-  /// [corner][group]; what cells that are not asked have seen. Empty: nothing.
-  std::vector<VisibilityEvidence> evidence;
-};
-
 class VisibilityInquiry {
  public:
-  /// @param wanted  [cell][group]: the lights to ask for. The facets, lights and scene outlive
-  ///                this.
+  /// @param wanted  [cell][group]: the lights to ask for.
+  /// @param around  [corner][group]: what cells that are not asked have seen; empty: nothing. The
+  ///                facets, lights and scene outlive this.
   VisibilityInquiry(const std::vector<Facet>& facets, const LightSet& lights,
                     const PeriodicScene& scene, std::vector<Cell> cells, CellCorners corners,
-                    std::vector<std::uint16_t> wanted);
+                    std::vector<std::uint16_t> wanted, std::vector<VisibilityEvidence> around = {});
 
   struct Round {
     std::int64_t rays = 0;
@@ -67,6 +59,7 @@ class VisibilityInquiry {
   std::vector<Cell> cells_;
   CellCorners corners_;
   std::vector<std::uint16_t> wanted_;
+  std::vector<VisibilityEvidence> around_;
   std::size_t groups_;
   std::vector<VisibilityEvidence> evidence_;
 };

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "acquisition/visibility_inquiry.h"
@@ -19,23 +20,21 @@ class VisibilityTable {
   using Answer = VisibilityAnswer;
 
   /// Knows nothing: every query is traced.
-  VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights);
+  explicit VisibilityTable(const LightSet& lights);
   static constexpr int least_rays = 2;  ///< of each cell towards each light
   /// From so many rays a cell and light on, uncertain cells are cut into 16 and asked again.
   static constexpr int rays_to_refine = 32;
+  /// @param cells      of the facets.
   /// @param most_rays  of each cell towards each light, at least `least_rays`.
-  VisibilityTable(const std::vector<Facet>& facets, const LightSet& lights,
+  VisibilityTable(const std::vector<Facet>& facets, FacetCells cells, const LightSet& lights,
                   const PeriodicScene& scene, int most_rays);
 
-  /// How many cells a table would have, before any is cut finer.
-  static std::size_t cells_of(const std::vector<Facet>& facets);
-
-  /// One answer a group of lights, for a point of a facet seen from its normal's side.
+  /// One answer a group of lights, for a point of a facet seen from its normal's side. Of facets
+  /// that the table does not have nothing is known.
   const Answer* at(std::uint32_t facet, float u, float v) const {
-    const Cells& cells = cells_[facet];
+    if (facet >= cells_.facets()) return unknown();
     Barycentric place{u, v};
-    const Rows& rows =
-        rows_[cells.first + (cells.side == 1 ? 0 : enter(static_cast<int>(cells.side), place))];
+    const Rows& rows = rows_[cells_.find(facet, place)];
     const std::size_t row = rows.first + (rows.refined ? enter(refinement, place) : 0);
     return &answers_[row * groups_];
   }
@@ -44,18 +43,11 @@ class VisibilityTable {
 
   /// What asking took.
   std::int64_t rays() const { return rays_; }
-  /// Share of the last rays that contradicted what was certain before them.
-  double contradicted() const { return contradicted_; }
-  std::size_t bytes() const;
 
  private:
   static constexpr int refinement = 4;  // cells a side that a cell is cut into
   static constexpr std::size_t parts = refinement * refinement;
 
-  struct Cells {
-    std::uint32_t first = 0;
-    std::uint32_t side = 1;  // cells a side: side * side in all
-  };
   struct Rows {
     std::uint32_t first : 31 = 0;
     std::uint32_t refined : 1 = 0;  // then `parts` rows, in the order of `enter`
@@ -64,16 +56,15 @@ class VisibilityTable {
   // Asks round after round, at most `most_rays`, until hardly any answer is contradicted; `share`
   // is the share of all queries that what is asked stands for.
   void ask(VisibilityInquiry& inquiry, int most_rays, double share, std::vector<Answer>& answers);
-  // Cuts those of `coarse` finer that are uncertain, and asks them again.
-  void refine(const std::vector<Facet>& facets, const LightSet& lights, const PeriodicScene& scene,
-              const VisibilityInquiry& coarse, const std::vector<Answer>& answers, int most_rays);
+  // Lays the answers of cells that are not cut finer, and of the parts of those that are.
+  void lay(const std::vector<Answer>& answers, std::span<const std::uint32_t> cut_cells,
+           const std::vector<Answer>& fine_answers);
 
   std::size_t groups_;
-  std::vector<Cells> cells_;     // a facet
+  FacetCells cells_;
   std::vector<Rows> rows_;       // a cell
   std::vector<Answer> answers_;  // [row][group]; the last row knows nothing
   std::int64_t rays_ = 0;
-  double contradicted_ = 0;
 };
 
 }  // namespace weft

@@ -46,27 +46,35 @@ struct Options {
 
 nlohmann::ordered_json json_of(const AcquisitionBench& b) {
   const TraceStatistics& s = b.statistics;
-  return {{"roofline_ratio", b.roofline_ratio},
-          {"speedup_equal_rmse", b.speedup_equal_rmse},
-          {"full_dataset_seconds", b.full_dataset_seconds},
-          {"samples_per_second", b.samples_per_second},
-          {"rays_per_second", b.rays_per_second},
-          {"embree_seconds", b.embree_seconds},
-          {"embree_forms",
-           {{"primary", b.primary_form},
-            {"bounce", b.bounce_form},
-            {"first_shadow", b.first_shadow_form},
-            {"later_shadow", b.later_shadow_form}}},
-          {"visibility_queries", s.visibility_queries},
-          {"shadow_rays", s.shadow_rays},
-          {"table_rays", s.table_rays},
-          {"answers_checked", s.answers_checked},
-          {"wrong_answers", s.wrong_answers},
-          {"negative_means", s.negative},
-          {"rmse", b.rmse},
-          {"naive_rmse", b.naive_rmse},
-          {"naive_spp", naive_bench_spp},
-          {"naive_seconds_a_pair", b.naive_seconds_a_pair}};
+  nlohmann::ordered_json json = {{"roofline_ratio", b.roofline_ratio},
+                                 {"speedup_equal_rmse", b.speedup_equal_rmse},
+                                 {"full_dataset_seconds", b.full_dataset_seconds},
+                                 {"samples_per_second", b.samples_per_second},
+                                 {"rays_per_second", b.rays_per_second},
+                                 {"embree_seconds", b.embree_seconds},
+                                 {"embree_forms",
+                                  {{"primary", b.primary_form},
+                                   {"bounce", b.bounce_form},
+                                   {"first_shadow", b.first_shadow_form},
+                                   {"later_shadow", b.later_shadow_form}}},
+                                 {"visibility_queries", s.visibility_queries},
+                                 {"shadow_rays", s.shadow_rays},
+                                 {"table_rays", s.table_rays},
+                                 {"answers_checked", s.answers_checked},
+                                 {"wrong_answers", s.wrong_answers},
+                                 {"negative_means", s.negative},
+                                 {"rmse", b.rmse},
+                                 {"naive_rmse", b.naive_rmse},
+                                 {"naive_spp", naive_bench_spp},
+                                 {"naive_seconds_a_pair", b.naive_seconds_a_pair}};
+  if (b.indirect_cache) {
+    json["indirect_cache"] = {{"full_dataset_seconds", b.indirect_cache->full_dataset_seconds},
+                              {"samples_per_second", b.indirect_cache->samples_per_second},
+                              {"bias", b.indirect_cache->bias},
+                              {"rms_difference", b.indirect_cache->rms_difference},
+                              {"standard_error", b.indirect_cache->standard_error}};
+  }
+  return json;
 }
 
 std::string file_of(const std::string& name) {
@@ -94,12 +102,6 @@ std::vector<std::pair<std::string, Mesostructure>> read_structures(const std::st
   return result;
 }
 
-bool all_lambert(const Mesostructure& mesostructure) {
-  return mesostructure.curves.segments.empty() &&
-         std::ranges::all_of(mesostructure.materials,
-                             [](const Bsdf& b) { return b.kind() == Bsdf::Kind::lambert; });
-}
-
 void bench_acquire(const Options& options, Session& session) {
   const fs::path folder = scene_folder(options.scenes) / "mesostructures";
   AcquisitionSettings settings;
@@ -119,22 +121,13 @@ void bench_acquire(const Options& options, Session& session) {
     session.say(fmt::format("{:15} {:9.2f} {:12.4g} {:12.4g} {:9.2f} {:9.1f} {:9.3g}", name,
                             b.full_dataset_seconds, b.samples_per_second, b.rays_per_second,
                             b.roofline_ratio, b.speedup_equal_rmse, b.rmse));
-  }
-  for (const auto& [name, mesostructure] : chosen) {
-    if (!all_lambert(mesostructure)) continue;
-    Progress progress(name, session.quiet || session.json);
-    const fs::path dataset = fs::temp_directory_path() / fmt::format("weft_bench_{}.btf", getpid());
-    const IndirectCacheBench b = bench_indirect_cache(mesostructure, settings, dataset, progress);
-    session.measured["indirect_cache"][name] = {{"full_dataset_seconds", b.full_dataset_seconds},
-                                                {"samples_per_second", b.samples_per_second},
-                                                {"bias", b.bias},
-                                                {"rms_difference", b.rms_difference},
-                                                {"standard_error", b.standard_error}};
-    session.say(
-        fmt::format("{:15} {:9.2f} {:12.4g} with --indirect cache: the tile's mean is off "
-                    "by {:.3f} % in the mean, {:.3f} % RMS (noise {:.3f} %)",
-                    name, b.full_dataset_seconds, b.samples_per_second, 100 * b.bias,
-                    100 * b.rms_difference, 100 * b.standard_error));
+    if (const auto& c = b.indirect_cache) {
+      session.say(
+          fmt::format("{:>15} {:9.2f} {:12.4g}   the tile's mean is off by {:.3f} % in the "
+                      "mean, {:.3f} % RMS (noise {:.3f} %)",
+                      "indirect cache", c->full_dataset_seconds, c->samples_per_second,
+                      100 * c->bias, 100 * c->rms_difference, 100 * c->standard_error));
+    }
   }
   for (const AcquisitionCost& cost : acquisition_costs(chosen.front().second, settings)) {
     session.measured["costs"][cost.size].push_back(

@@ -200,40 +200,29 @@ void measure_speedup(const std::shared_ptr<const TraceableStructure>& structure,
   bench.speedup_equal_rmse = bench.naive_seconds_a_pair * naive_square / (seconds_a_pair * square);
 }
 
-}  // namespace
-
-AcquisitionBench bench_acquisition(const std::string& name, const Mesostructure& mesostructure,
-                                   const AcquisitionSettings& settings,
-                                   const std::filesystem::path& folder, Progress& progress) {
-  AcquisitionBench bench;
-  bench.structure = name;
+AcquisitionReport acquire_once(const Mesostructure& mesostructure,
+                               const AcquisitionSettings& settings,
+                               const std::filesystem::path& folder, Progress& progress) {
   std::filesystem::remove_all(folder);
-  const AcquisitionReport report = acquire(mesostructure, settings, folder, progress);
+  AcquisitionReport report = acquire(mesostructure, settings, folder, progress);
   std::filesystem::remove_all(folder);
-  bench.statistics = report.statistics;
-  bench.full_dataset_seconds = report.seconds;
-  const auto lights = static_cast<double>(report.lights);
-  bench.samples_per_second = static_cast<double>(report.statistics.paths) * lights / report.seconds;
-  bench.rays_per_second = static_cast<double>(report.statistics.rays()) / report.seconds;
-  const auto structure = std::make_shared<const TraceableStructure>(mesostructure);
-  measure_embree(structure, settings, bench);
-  measure_speedup(structure, settings, bench);
-  return bench;
+  return report;
 }
 
-IndirectCacheBench bench_indirect_cache(const Mesostructure& mesostructure,
+double samples_per_second(const AcquisitionReport& report) {
+  return static_cast<double>(report.statistics.paths) * static_cast<double>(report.lights) /
+         report.seconds;
+}
+
+IndirectCacheBench bench_indirect_cache(const std::shared_ptr<const TraceableStructure>& structure,
                                         const AcquisitionSettings& settings,
                                         const std::filesystem::path& folder, Progress& progress) {
   AcquisitionSettings cached = settings;
   cached.trace.indirect_cache = true;
   IndirectCacheBench bench;
-  std::filesystem::remove_all(folder);
-  const AcquisitionReport report = acquire(mesostructure, cached, folder, progress);
-  std::filesystem::remove_all(folder);
+  const AcquisitionReport report = acquire_once(structure->mesostructure, cached, folder, progress);
   bench.full_dataset_seconds = report.seconds;
-  bench.samples_per_second = static_cast<double>(report.statistics.paths) *
-                             static_cast<double>(report.lights) / report.seconds;
-  const auto structure = std::make_shared<const TraceableStructure>(mesostructure);
+  bench.samples_per_second = samples_per_second(report);
   const std::vector<Direction> views = named_directions(settings.views);
   const std::vector<Direction> lights = named_directions(settings.lights);
   cached.trace.views = views.size();
@@ -265,6 +254,26 @@ IndirectCacheBench bench_indirect_cache(const Mesostructure& mesostructure,
   bench.bias /= pairs;
   bench.rms_difference = std::sqrt(bench.rms_difference / pairs);
   bench.standard_error /= pairs;
+  return bench;
+}
+
+}  // namespace
+
+AcquisitionBench bench_acquisition(const std::string& name, const Mesostructure& mesostructure,
+                                   const AcquisitionSettings& settings,
+                                   const std::filesystem::path& folder, Progress& progress) {
+  AcquisitionBench bench;
+  bench.structure = name;
+  const AcquisitionReport report = acquire_once(mesostructure, settings, folder, progress);
+  bench.statistics = report.statistics;
+  bench.full_dataset_seconds = report.seconds;
+  bench.samples_per_second = samples_per_second(report);
+  bench.rays_per_second = static_cast<double>(report.statistics.rays()) / report.seconds;
+  const auto structure = std::make_shared<const TraceableStructure>(mesostructure);
+  measure_embree(structure, settings, bench);
+  measure_speedup(structure, settings, bench);
+  if (!IndirectCache::obstacle(mesostructure))
+    bench.indirect_cache = bench_indirect_cache(structure, settings, folder, progress);
   return bench;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,17 @@
 #include "btf/progress.h"
 
 namespace weft {
+
+/// What the cache of indirect light (`TraceSettings::indirect_cache`) gains and how far it is off.
+struct IndirectCacheBench {
+  double full_dataset_seconds = 0;  ///< from the structure to the written dataset
+  double samples_per_second = 0;
+  /// Of the tile's mean of a pair, relative, over some pairs: its mean (the bias), the root of its
+  /// mean square, and the standard error of one of them, that of the unbiased side included.
+  double bias = 0;
+  double rms_difference = 0;
+  double standard_error = 0;
+};
 
 /// What one structure's acquisition takes. Times are of the wall, with all threads.
 struct AcquisitionBench {
@@ -27,31 +39,16 @@ struct AcquisitionBench {
   std::string later_shadow_form;
   /// Time x mean square error of the plain way (`trace_pair_naively`) over ours, for a pair.
   double speedup_equal_rmse = 0;
-  double naive_seconds_a_pair = 0;  ///< at `naive_spp`
-  double naive_rmse = 0;            ///< over texels and some pairs, 1/sr
-  double rmse = 0;                  ///< ours, of the same pairs
+  double naive_seconds_a_pair = 0;                   ///< at `naive_spp`
+  double naive_rmse = 0;                             ///< over texels and some pairs, 1/sr
+  double rmse = 0;                                   ///< ours, of the same pairs
+  std::optional<IndirectCacheBench> indirect_cache;  ///< where the structure can have it
 };
 
 inline constexpr int naive_bench_spp = 16;
 
-/// What the cache of indirect light (`TraceSettings::indirect_cache`) gains and how far it is off.
-struct IndirectCacheBench {
-  double full_dataset_seconds = 0;  ///< from the structure to the written dataset
-  double samples_per_second = 0;
-  /// Of the tile's mean of a pair, relative, over some pairs: its mean (the bias), the root of its
-  /// mean square, and the standard error of one of them, that of the unbiased side included.
-  double bias = 0;
-  double rms_difference = 0;
-  double standard_error = 0;
-};
-
-/// Traces the whole dataset into `folder`, which is removed again, then some views with and without
-/// the cache. @throws Error  where a material is not Lambert.
-IndirectCacheBench bench_indirect_cache(const Mesostructure& mesostructure,
-                                        const AcquisitionSettings& settings,
-                                        const std::filesystem::path& folder, Progress& progress);
-
-/// Traces the whole dataset into `folder`, which is removed again, then measures the rest on parts.
+/// Traces the whole dataset into `folder`, which is removed again, with and without the cache of
+/// indirect light, then measures the rest on parts.
 AcquisitionBench bench_acquisition(const std::string& name, const Mesostructure& mesostructure,
                                    const AcquisitionSettings& settings,
                                    const std::filesystem::path& folder, Progress& progress);

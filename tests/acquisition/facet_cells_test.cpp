@@ -19,6 +19,15 @@ Barycentric point(int i) {
   return {root * (1 - share), root * share};
 }
 
+// Of a cell that `at` is said to lie in, at `inside`.
+void require_same_place(const Cell& cell, const Barycentric& inside, const Barycentric& at) {
+  INFO("point " << at[0] << ", " << at[1]);
+  REQUIRE(std::min({inside[0], inside[1], 1 - inside[0] - inside[1]}) > -1e-4F);
+  const Barycentric again = point_of(cell, inside[0], inside[1]);
+  REQUIRE(again[0] == Approx(at[0]).margin(2e-6));
+  REQUIRE(again[1] == Approx(at[1]).margin(2e-6));
+}
+
 }  // namespace
 
 TEST_CASE("a point is found in the cell that holds it, at the same place") {
@@ -30,12 +39,9 @@ TEST_CASE("a point is found in the cell that holds it, at the same place") {
       const Barycentric at = point(i);
       Barycentric inside = at;
       const Cell& cell = cells.at(enter(side, inside));
-      INFO("side " << side << ", point " << at[0] << ", " << at[1]);
+      INFO("side " << side);
       REQUIRE(cell.facet == 7);
-      REQUIRE(std::min({inside[0], inside[1], 1 - inside[0] - inside[1]}) > -1e-4F);
-      const Barycentric again = point_of(cell, inside[0], inside[1]);
-      REQUIRE(again[0] == Approx(at[0]).margin(1e-6));
-      REQUIRE(again[1] == Approx(at[1]).margin(1e-6));
+      require_same_place(cell, inside, at);
     }
   }
 }
@@ -50,9 +56,7 @@ TEST_CASE("cells of a cell are found like those of a facet") {
     cut(cells.at(enter(3, inside)), 4, parts);
     REQUIRE(parts.size() == 16);
     const Cell& part = parts.at(enter(4, inside));
-    const Barycentric again = point_of(part, inside[0], inside[1]);
-    REQUIRE(again[0] == Approx(at[0]).margin(2e-6));
-    REQUIRE(again[1] == Approx(at[1]).margin(2e-6));
+    require_same_place(part, inside, at);
   }
 }
 
@@ -70,9 +74,19 @@ TEST_CASE("random points of a cell lie in it, four in a row in its four quarters
   }
 }
 
-TEST_CASE("a place has one key in every copy of the tile") {
-  CHECK(place_key({0.25F, 0.5F, 0.1F}) == place_key({1.25F, -0.5F, 0.1F}));
-  CHECK(place_key({0, 0, 0}) == place_key({1, 1, 0}));
-  CHECK(place_key({0.25F, 0.5F, 0.1F}) != place_key({0.2501F, 0.5F, 0.1F}));
-  CHECK(place_key({0.25F, 0.5F, 0.1F}) != place_key({0.25F, 0.5F, 0.1001F}));
+TEST_CASE("the cells of all facets are numbered one after the other") {
+  const std::vector<Facet> facets = facets_of(test::rings(32, 8).mesh);
+  const FacetCells cells(facets);
+  const std::vector<Cell> all = cells.all();
+  REQUIRE(cells.facets() == facets.size());
+  REQUIRE(cells.count() == all.size());
+  REQUIRE(cells.count() > facets.size());  // the plane's are cut
+  for (int i = 0; i < 2000; ++i) {
+    const std::uint32_t f = i % 4 == 0 ? i % 2 : static_cast<std::uint32_t>(i % facets.size());
+    const Barycentric at = point(i);
+    Barycentric inside = at;
+    const Cell& cell = all.at(cells.find(f, inside));
+    REQUIRE(cell.facet == f);
+    require_same_place(cell, inside, at);
+  }
 }

@@ -79,13 +79,13 @@ void check_equal(const Estimate& a, const Estimate& b, const Shifted& shifted) {
 }
 
 // The tile's mean integrated over fibonacci:1024 lights, at every view. The lights are dealt to 64
-// tracers, every 64th to each, with paths of their own: 32,768 paths a view, a standard error near
-// 0.2 %, at a 64th of the rays.
-void check_white(const std::string& name, const std::vector<Direction>& views) {
+// tracers, every 64th to each, with paths of their own: 32,768 paths a view, a standard error of
+// 0.2 % (on fibres 0.5 %), at a 64th of the rays.
+std::vector<double> albedos(const std::shared_ptr<const TraceableStructure>& structure,
+                            const std::vector<Direction>& views, std::uint64_t run) {
   constexpr std::size_t deals = 64;
   const HemisphereSampling lights(named_directions("fibonacci:1024"));
   const std::vector<double> solid_angles = lights.solid_angles();
-  const auto structure = std::make_shared<const TraceableStructure>(painted_white(name));
   std::vector<double> albedo(views.size());
   for (std::size_t deal = 0; deal < deals; ++deal) {
     std::vector<Direction> dealt;
@@ -96,7 +96,7 @@ void check_white(const std::string& name, const std::vector<Direction>& views) {
                              .spp = 2,
                              .max_bounces = TraceSettings::unlimited,
                              .views = views.size(),
-                             .seed = deal});
+                             .seed = deals * run + deal});
     for (std::size_t v = 0; v < views.size(); ++v) {
       const TracedView traced = tracer.trace(views[v], v);
       for (std::size_t i = 0; i < traced.values.size(); i += 3) {
@@ -104,6 +104,27 @@ void check_white(const std::string& name, const std::vector<Direction>& views) {
       }
     }
   }
+  return albedo;
+}
+
+// Views that are off by more than 0.7 % are traced four times more: on fibres 1 % is then over four
+// standard errors, so that chance fails one of 81 views in fewer than 1 of 500 seeds.
+void check_white(const std::string& name, const std::vector<Direction>& views) {
+  const auto structure = std::make_shared<const TraceableStructure>(painted_white(name));
+  std::vector<double> albedo = albedos(structure, views, 0);
+  std::vector<std::size_t> doubtful;
+  std::vector<Direction> again;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (std::abs(albedo[v] - 1) <= 0.007) continue;
+    doubtful.push_back(v);
+    again.push_back(views[v]);
+  }
+  constexpr std::uint64_t more = 4;
+  for (std::uint64_t run = 1; !again.empty() && run <= more; ++run) {
+    const std::vector<double> once_more = albedos(structure, again, run);
+    for (std::size_t i = 0; i < again.size(); ++i) albedo[doubtful[i]] += once_more[i];
+  }
+  for (const std::size_t v : doubtful) albedo[v] /= 1 + more;
   for (std::size_t v = 0; v < views.size(); ++v) {
     INFO(name << ", view at theta " << degrees(theta_of(views[v])) << ", phi "
               << degrees(phi_of(views[v])));

@@ -25,7 +25,8 @@ struct Tally {
 // Random points of the facets below `facets_end`, each asked for one random light that faces it.
 Tally hold_against_rays(const TraceableStructure& structure, const LightSet& lights,
                         std::size_t facets_end, int points, int most_rays = 4) {
-  const VisibilityTable table(structure.facets, lights, structure.scene, most_rays);
+  const VisibilityTable table(structure.facets, FacetCells(structure.facets), lights,
+                              structure.scene, most_rays);
   Tally tally;
   for (int i = 0; i < points; ++i) {
     const auto u = [&](int dimension) { return unit_float(hash_coordinates(i, dimension, 5)); };
@@ -127,7 +128,8 @@ TEST_CASE("cells where shadows end are cut finer, where that pays") {
 TEST_CASE("every cell of a facet is reached, and its rim too") {
   const std::vector<Facet> facets = facets_of(test::flat(Rgb(1)).mesh);
   const LightSet lights({{0, 0, 1}});
-  const VisibilityTable table(facets, lights, PeriodicScene(test::flat(Rgb(1)).mesh), 1);
+  const FacetCells cells(facets);
+  const VisibilityTable table(facets, cells, lights, PeriodicScene(test::flat(Rgb(1)).mesh), 1);
   std::set<const VisibilityTable::Answer*> reached;
   for (std::uint32_t f = 0; f < 2; ++f) {
     for (int i = 0; i < 400'000; ++i) {
@@ -137,7 +139,7 @@ TEST_CASE("every cell of a facet is reached, and its rim too") {
     }
   }
   const std::size_t inside = reached.size();
-  CHECK(inside == VisibilityTable::cells_of(facets));
+  CHECK(inside == cells.count());
   CHECK_FALSE(reached.contains(table.unknown()));
   for (std::uint32_t f = 0; f < 2; ++f) {
     for (int i = 0; i <= 1000; ++i) {
@@ -154,8 +156,8 @@ TEST_CASE("lanes beyond the last light are known and not visible") {
   const TraceableStructure flat(test::flat(Rgb(1)));
   for (const std::size_t count : {1UL, 15UL, 16UL, 17UL, 81UL}) {
     const LightSet lights(named_directions("fibonacci:" + std::to_string(count)));
-    const VisibilityTable table(flat.facets, lights, flat.scene, 2);
-    const VisibilityTable ignorant(flat.facets, lights);
+    const VisibilityTable table(flat.facets, FacetCells(flat.facets), lights, flat.scene, 2);
+    const VisibilityTable ignorant(lights);
     for (std::size_t g = 0; g < lights.groups(); ++g) {
       const auto unused = static_cast<std::uint16_t>(~lights.used_lanes(g));
       INFO("group " << g << " of " << count << " lights");
