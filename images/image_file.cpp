@@ -116,9 +116,11 @@ std::unique_ptr<OIIO::ImageOutput> writer_for(const fs::path& path) {
   return output;
 }
 
-OIIO::ImageSpec output_spec(const Image& image, bool floats) {
+OIIO::ImageSpec output_spec(const Image& image, bool floats, FloatSize size) {
+  const OIIO::TypeDesc real =
+      size == FloatSize::half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
   OIIO::ImageSpec spec(image.width, image.height, image.channels,
-                       floats ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+                       floats ? real : OIIO::TypeDesc::UINT8);
   // Values are stored as they are: no division by alpha, no date (same input, same bytes).
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("DateTime", "");
@@ -161,7 +163,7 @@ void check_image_path(const fs::path& path) {
   writer_for(path);
 }
 
-void write_image(const fs::path& path, const Image& image, Encoding encoding) {
+void write_image(const fs::path& path, const Image& image, Encoding encoding, FloatSize size) {
   const bool floats = holds_floats(path);
   if (image.width <= 0 || image.height <= 0 || image.channels <= 0) {
     throw bad_input(path.string(),
@@ -171,7 +173,7 @@ void write_image(const fs::path& path, const Image& image, Encoding encoding) {
   check_image_path(path);
   if (!floats) refuse_nan(path, image);
 
-  const OIIO::ImageSpec spec = output_spec(image, floats);
+  const OIIO::ImageSpec spec = output_spec(image, floats, size);
   const std::vector<std::uint8_t> bytes =
       floats ? std::vector<std::uint8_t>() : to_bytes(image, encoding, spec.alpha_channel);
   write_atomically(path, [&](const fs::path& aside) {

@@ -12,6 +12,9 @@ namespace weft {
 /// (`colour`). Float and half files are linear either way.
 enum class Encoding { linear, colour };
 
+/// What one number of an `.exr` is; other formats have their own.
+enum class FloatSize { full, half };
+
 /// Reads the first image of any file that OpenImageIO knows.
 /// @throws Error  naming the file and why (missing, truncated, unknown format).
 Image read_image(const std::filesystem::path& path, Encoding encoding);
@@ -24,6 +27,7 @@ void check_image_path(const std::filesystem::path& path);
 /// Format by extension. `.exr` and `.hdr` hold linear floats; `.png`, `.jpg` and other 8-bit
 /// formats are sRGB-encoded with `Encoding::colour` and raw bytes (value * 255, rounded) with
 /// `Encoding::linear`. Written aside and renamed. @throws Error naming the file.
-void write_image(const std::filesystem::path& path, const Image& image, Encoding encoding);
+void write_image(const std::filesystem::path& path, const Image& image, Encoding encoding,
+                 FloatSize size = FloatSize::full);
 
 }  // namespace weft

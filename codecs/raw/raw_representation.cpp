@@ -9,6 +9,7 @@
 #include "btf/btf_file.h"
 #include "btf/error.h"
 #include "codecs/raw/raw.h"
+#include "codecs/sample_check.h"
 #include "codecs/stencil_glsl.h"
 
 namespace weft {
@@ -196,6 +197,7 @@ Codec raw_codec() {
       .fit = [](std::shared_ptr<const Btf> btf, const Settings& parameters,
                 Progress&) -> std::unique_ptr<Representation> {
         parameters.finish();
+        refuse_invalid_samples(*btf);
         return std::make_unique<RawRepresentation>(std::move(btf));
       },
       .load = [](const std::filesystem::path& folder) -> std::unique_ptr<Representation> {

@@ -42,6 +42,8 @@ std::vector<Case> cases() {
   all.push_back({"cmf", {"clustered=false"}});
   all.push_back({"cmf", {"clustered=false", "bits=float", "factors=light,view", "resolution=31"}});
   all.push_back({"cmf", {"clusters=17", "refine=2"}});
+  all.push_back({"pca", {"bits=8", "components=3"}});
+  all.push_back({"pca-view", {"bits=float"}});
   return all;
 }
 

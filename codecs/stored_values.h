@@ -1,0 +1,45 @@
+// Numbers in [-1, 1] as textures hold them: 8 bits, half or float. In memory they are the floats
+// that come back, so that no decoder converts; on disk and on the GPU what was asked for.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "codecs/gl_program.h"
+#include "settings/settings.h"
+
+namespace weft {
+
+enum class Storage { eight_bit, half, float32 };
+
+/// The parameter `bits`: half (default), 8 or float.
+Storage storage_parameter(const Settings& parameters);
+/// "8", "half" or "float".
+std::string name_of(Storage storage);
+std::size_t bytes_a_value(Storage storage);
+
+/// Rounds to what the storage holds: 8 bits are (byte - 128) / 127.
+float stored_value(Storage storage, float value);
+
+/// A texture buffer of four values a texel.
+/// @param values  stored ones, a multiple of four.
+GlTexture stored_texture(std::string name, Storage storage, const std::vector<float>& values);
+
+/// A GLSL expression for the four values of texel `index` of such a texture.
+std::string stored_fetch(const std::string& name, const std::string& index, Storage storage);
+
+/// Writes NAME.exr, or NAME.png where there are 8 bits, of four channels. @return its entry for
+/// `arrays` of codec.json.
+/// @param values  stored ones, [height][width][4].
+nlohmann::ordered_json write_stored(const std::filesystem::path& folder, const std::string& name,
+                                    int width, int height, Storage storage,
+                                    const std::vector<float>& values);
+
+/// @throws Error  where `arrays` has no such entry, or its file is of another size.
+std::vector<float> read_stored(const std::filesystem::path& folder,
+                               const nlohmann::ordered_json& arrays, const std::string& name,
+                               int width, int height, Storage storage);
+
+}  // namespace weft
