@@ -10,6 +10,8 @@
 #include "btf/atomic_file.h"
 #include "btf/error.h"
 #include "codecs/cmf/cmf.h"
+#include "codecs/dfmf/dfmf.h"
+#include "codecs/laplacian/laplacian.h"
 #include "codecs/pca/pca.h"
 #include "codecs/pca_view/pca_view.h"
 #include "codecs/raw/raw.h"
@@ -29,7 +31,8 @@ std::string hint_for(const std::string& name) {
 }  // namespace
 
 std::span<const Codec> codecs() {
-  static const std::array table{raw_codec(), cmf_codec(), pca_codec(), pca_view_codec()};
+  static const std::array table{raw_codec(),      cmf_codec(),       pca_codec(),
+                                pca_view_codec(), laplacian_codec(), dfmf_codec()};
   return table;
 }
 

@@ -44,6 +44,10 @@ std::vector<Case> cases() {
   all.push_back({"cmf", {"clusters=17", "refine=2"}});
   all.push_back({"pca", {"bits=8", "components=3"}});
   all.push_back({"pca-view", {"bits=float"}});
+  all.push_back({"dfmf", {"bits=8", "components_u=3"}});
+  all.push_back({"laplacian", {"bits=half", "directions=interpolated", "filters=box2"}});
+  all.push_back({"laplacian", {"bits=8", "filters=linear", "components_cb=3", "levels=1"}});
+  all.push_back({"laplacian", {"chroma_mean=cosine", "components_y=12", "prediction=open"}});
   return all;
 }
 
