@@ -65,23 +65,13 @@ Rgb evaluate_level(const Btf& btf, const Texcoord& uv, const Stencil& view, cons
 }  // namespace
 
 TexelStencil bilinear_texels(Texcoord uv, int width, int height) {
-  const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(width) - 0.5F;
-  const float y = (1 - (uv.y - std::floor(uv.y))) * static_cast<float>(height) - 0.5F;
-  const float fx = std::floor(x);
-  const float fy = std::floor(y);
-  const auto wrap = [](float i, int n) {
-    // i is in [-1, n], or NaN, which may not be cast; its weights are NaN and tell of it.
-    const int k = i >= 0 ? static_cast<int>(i) : n - 1;
-    return static_cast<std::uint32_t>(k >= n ? 0 : k);
-  };
-  const std::uint32_t x0 = wrap(fx, width);
-  const std::uint32_t x1 = wrap(fx + 1, width);
-  const std::uint32_t y0 = wrap(fy, height) * static_cast<std::uint32_t>(width);
-  const std::uint32_t y1 = wrap(fy + 1, height) * static_cast<std::uint32_t>(width);
-  const float ax = x - fx;
-  const float ay = y - fy;
-  return {{y0 + x0, y0 + x1, y1 + x0, y1 + x1},
-          {(1 - ax) * (1 - ay), ax * (1 - ay), (1 - ax) * ay, ax * ay}};
+  const AxisStencil x = column_stencil(uv, width);
+  const AxisStencil y = row_stencil(uv, height);
+  const std::uint32_t low = y.low * static_cast<std::uint32_t>(width);
+  const std::uint32_t high = y.high * static_cast<std::uint32_t>(width);
+  return {{low + x.low, low + x.high, high + x.low, high + x.high},
+          {(1 - x.blend) * (1 - y.blend), x.blend * (1 - y.blend), (1 - x.blend) * y.blend,
+           x.blend * y.blend}};
 }
 
 Btf next_mip_level(const Btf& finer) {

@@ -1,6 +1,8 @@
 // Codec zero: a raw BTF with its mip chain, interpolated over texels, directions and levels.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -31,6 +33,29 @@ class RawAppearance : public Appearance {
 
 /// 1 / cos(theta) of each light; 0 for one on the horizon, which tells nothing about f.
 std::vector<float> inverse_cosines(const HemisphereSampling& lights);
+
+/// The two texels around a place along one axis of n texels, in texels from the first one's centre,
+/// and the share of the second; repeats. For a NaN they are in range and the share is NaN.
+struct AxisStencil {
+  std::uint32_t low;
+  std::uint32_t high;
+  float blend;
+};
+inline AxisStencil axis_stencil(float place, int n) {
+  const float below = std::floor(place);
+  const auto wrap = [n](float i) {
+    // i is in [-1, n], or NaN, which may not be cast.
+    const int k = i >= 0 ? static_cast<int>(i) : n - 1;
+    return static_cast<std::uint32_t>(k >= n ? 0 : k);
+  };
+  return {wrap(below), wrap(below + 1), place - below};
+}
+inline AxisStencil column_stencil(Texcoord uv, int width) {
+  return axis_stencil((uv.x - std::floor(uv.x)) * static_cast<float>(width) - 0.5F, width);
+}
+inline AxisStencil row_stencil(Texcoord uv, int height) {
+  return axis_stencil((1 - (uv.y - std::floor(uv.y))) * static_cast<float>(height) - 0.5F, height);
+}
 
 /// The four texels around (u, v) and their bilinear weights; repeats. `index` = y * width + x. For
 /// a NaN the indices are in range and the weights NaN.

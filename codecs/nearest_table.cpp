@@ -23,9 +23,9 @@ NearestTable::NearestTable(const HemisphereSampling& sampling)
     }
   });
   for (std::size_t i = 0; i < sampling.size(); ++i) {
-    const Vec2 p = parabolic(sampling[i]);
-    table_[static_cast<std::size_t>(place(p.y)) * size_ + place(p.x)] =
-        static_cast<std::uint16_t>(i);
+    const float scale = 1 / (1 + sampling[i].z);  // as it will be asked for
+    table_[static_cast<std::size_t>(place(sampling[i].y * scale)) * size_ +
+           place(sampling[i].x * scale)] = static_cast<std::uint16_t>(i);
   }
 }
 

@@ -19,8 +19,9 @@ class NearestTable {
 
   /// @param direction  unit, z >= 0. A sampled one answers itself.
   std::uint16_t operator()(const Direction& direction) const {
-    return table_[static_cast<std::size_t>(place(direction.y / (1 + direction.z))) * size_ +
-                  place(direction.x / (1 + direction.z))];
+    const float scale = 1 / (1 + direction.z);
+    return table_[static_cast<std::size_t>(place(direction.y * scale)) * size_ +
+                  place(direction.x * scale)];
   }
 
   /// `int PREFIX_nearest(vec3 direction)`, with its table, a texture buffer.

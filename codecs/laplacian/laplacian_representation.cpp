@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "btf/raw_appearance.h"
 #include "codecs/branchless_exp.h"
@@ -14,8 +15,13 @@ namespace {
 
 constexpr std::size_t most_slots = 96;
 
-Vec4 load(const float* p) {
-  Vec4 v;
+/// Four slots side by side, and sixteen.
+using Vec4 = float __attribute__((vector_size(16)));
+using Vec16 = float __attribute__((vector_size(64)));
+
+template <typename Lanes>
+Lanes load(const float* p) {
+  Lanes v;
   __builtin_memcpy(&v, p, sizeof v);
   return v;
 }
@@ -26,11 +32,12 @@ float level_of(float lod, int top) {
 }
 
 Corners corners(Texcoord uv, int width, int height) {
-  const TexelStencil texels = bilinear_texels(uv, width, height);
-  const auto w = static_cast<std::uint32_t>(width);
-  return {{static_cast<int>(texels.index[0] % w), static_cast<int>(texels.index[3] % w)},
-          {static_cast<int>(texels.index[0] / w), static_cast<int>(texels.index[3] / w)},
-          texels.weight};
+  const AxisStencil x = column_stencil(uv, width);
+  const AxisStencil y = row_stencil(uv, height);
+  return {{static_cast<int>(x.low), static_cast<int>(x.high)},
+          {static_cast<int>(y.low), static_cast<int>(y.high)},
+          {(1 - x.blend) * (1 - y.blend), x.blend * (1 - y.blend), (1 - x.blend) * y.blend,
+           x.blend * y.blend}};
 }
 
 // Equation 5, side by side.
@@ -83,7 +90,9 @@ LaplacianRepresentation::LaplacianRepresentation(Model model)
   const std::vector<float> inverse = inverse_cosines(model_.head.lights);
   const std::size_t slots = model_.slots();
   const std::size_t levels = static_cast<std::size_t>(model_.levels());
-  eigen_.resize(model_.eigen.size());
+  weights_ = model_.weights;
+  weights_.resize(weights_.size() + 4);  // where the last row's sixteen lanes end
+  eigen_.resize(model_.eigen.size() + 4);
   for (std::size_t pair = 0; pair < model_.head.pairs(); ++pair) {
     const float factor = model_.interpolated ? inverse[pair % inverse.size()] : 1;
     for (std::size_t level = 0; level < levels; ++level) {
@@ -110,6 +119,8 @@ LaplacianRepresentation::Pairs LaplacianRepresentation::weighted_pairs(const Ste
                                                                        const Stencil& views,
                                                                        float cosine) const {
   Pairs pairs;
+  pairs.index[0] = 0;  // asked for even where all weights fade to zero
+  pairs.weight[0] = 0;
   for (std::size_t v = 0; v < 3; ++v) {
     for (std::size_t l = 0; l < 3; ++l) {
       const float weight = views.weight[v] * lights.weight[l];
@@ -128,30 +139,36 @@ LaplacianRepresentation::Place LaplacianRepresentation::place_of(Texcoord uv, fl
           corners(uv, model_.pyramid.width_of(level), model_.pyramid.height_of(level))};
 }
 
-// D^T E of one level, slot by slot. `Quads` is known to the compiler where it is the paper's three,
-// which halves the time of a query.
+// D^T E of one level, slot by slot. The paper's twelve slots are one vector of sixteen: its last
+// four lanes hold the beginning of the next row, and nobody adds them up.
 template <std::size_t Quads>
-void LaplacianRepresentation::add_level(int level, const Blend& blend, const Pairs& pairs,
-                                        Vec4* sum) const {
-  const std::size_t quads = Quads > 0 ? Quads : model_.quads();
-  const std::size_t stride = model_.levels() * 4 * quads;
-  const float* weights = &model_.weights[first_row_[level] * 4 * quads];
-  const float* eigen = &eigen_[level * 4 * quads];
-  for (std::size_t q = 0; q < quads; ++q) {
-    Vec4 d{};
+[[gnu::always_inline]] inline void LaplacianRepresentation::add_level(int level, const Blend& blend,
+                                                                      const Pairs& pairs,
+                                                                      float* sum) const {
+  using Lanes = std::conditional_t<Quads == 3, Vec16, Vec4>;
+  constexpr std::size_t step = sizeof(Lanes) / sizeof(float);
+  const std::size_t slots = 4 * (Quads > 0 ? Quads : model_.quads());
+  const std::size_t stride = model_.levels() * slots;
+  const float* weights = &weights_[first_row_[level] * slots];
+  const float* eigen = &eigen_[level * slots];
+  for (std::size_t s = 0; s < slots; s += step) {
+    Lanes d{};
     for (std::size_t t = 0; t < 4; ++t)
-      d += load(weights + 4 * (blend.texel[t] * quads + q)) * blend.weight[t];
-    Vec4 e = load(eigen + pairs.index[0] * stride + 4 * q) * pairs.weight[0];
+      d += load<Lanes>(weights + blend.texel[t] * slots + s) * blend.weight[t];
+    Lanes e = load<Lanes>(eigen + pairs.index[0] * stride + s) * pairs.weight[0];
     for (std::size_t i = 1; i < pairs.count; ++i)
-      e += load(eigen + pairs.index[i] * stride + 4 * q) * pairs.weight[i];
-    sum[q] += d * e;
+      e += load<Lanes>(eigen + pairs.index[i] * stride + s) * pairs.weight[i];
+    const Lanes total = load<Lanes>(sum + s) + d * e;
+    __builtin_memcpy(sum + s, &total, sizeof total);
   }
 }
 
 // What the levels from `grid` on say at the four texels of that level around uv.
 template <std::size_t Quads>
-void LaplacianRepresentation::add_boxes(const Corners& c, int grid, float weight,
-                                        const Pairs& pairs, Vec4* sum) const {
+[[gnu::always_inline]] inline void LaplacianRepresentation::add_boxes(const Corners& c, int grid,
+                                                                      float weight,
+                                                                      const Pairs& pairs,
+                                                                      float* sum) const {
   const Pyramid& pyramid = model_.pyramid;
   Blend blend;
   for (std::size_t t = 0; t < 4; ++t) blend.weight[t] = c.weight[t] * weight;
@@ -168,7 +185,7 @@ void LaplacianRepresentation::add_boxes(const Corners& c, int grid, float weight
 
 template <std::size_t Quads>
 void LaplacianRepresentation::add_levels(Texcoord uv, const Place& place, const Pairs& pairs,
-                                         Vec4* sum) const {
+                                         float* sum) const {
   const Pyramid& pyramid = model_.pyramid;
   if (pyramid.filters != Filters::linear) {
     add_boxes<Quads>(place.corners, place.level, 1 - place.blend, pairs, sum);
@@ -188,19 +205,25 @@ void LaplacianRepresentation::add_levels(Texcoord uv, const Place& place, const 
 // Equation 7.
 Rgb LaplacianRepresentation::decode(const AppearanceQuery& query, const Place& place,
                                     const Pairs& pairs, float mean_y) const {
-  alignas(64) std::array<Vec4, most_slots / 4> sum;
-  std::fill_n(sum.begin(), model_.quads(), Vec4{});
-  if (model_.quads() == 3)
+  alignas(64) std::array<float, most_slots> sum;
+  if (model_.quads() == 3) {
+    std::fill_n(sum.begin(), 16, 0.0F);
     add_levels<3>(query.uv, place, pairs, sum.data());
-  else
+  } else {
+    std::fill_n(sum.begin(), model_.slots(), 0.0F);
     add_levels<0>(query.uv, place, pairs, sum.data());
+  }
   std::array<float, 3> channel{mean_y, model_.mean_chroma[0], model_.mean_chroma[1]};
   if (model_.chroma == ChromaMean::cosine) {
     channel[1] *= query.light.z;
     channel[2] *= query.light.z;
   }
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float* slot = reinterpret_cast<const float*>(sum.data()) + model_.first_slot(c);
+  Vec4 luma{};
+  for (std::size_t quad = 0; quad < model_.luma_quads(); ++quad)
+    luma += load<Vec4>(sum.data() + 4 * quad);
+  channel[0] += (luma[0] + luma[2]) + (luma[1] + luma[3]);
+  for (std::size_t c = 1; c < 3; ++c) {
+    const float* slot = sum.data() + model_.first_slot(c);
     for (std::size_t k = 0; k < model_.components[c]; ++k) channel[c] += slot[k];
   }
   Rgb rgb = rgb_of_ycbcr(channel[0], channel[1], channel[2]);
@@ -232,26 +255,12 @@ void LaplacianRepresentation::evaluate(std::span<const AppearanceQuery> queries,
     }
     const std::array<Pairs, batch_lanes> pairs = pairs_of(light, view);
     const std::array<float, batch_lanes> mean = phong_means(model_.mean_y, light, view);
-    std::array<Place, batch_lanes> place;
     for (std::size_t i = 0; i < count; ++i) {
-      place[i] = place_of(queries[first + i].uv, queries[first + i].lod);
-      prefetch(place[i]);
+      const AppearanceQuery& query = queries[first + i];
+      answers[first + i] = is_seen[i]
+                               ? decode(query, place_of(query.uv, query.lod), pairs[i], mean[i])
+                               : Rgb(0, 0, 0);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      answers[first + i] =
-          is_seen[i] ? decode(queries[first + i], place[i], pairs[i], mean[i]) : Rgb(0, 0, 0);
-    }
-  }
-}
-
-// The four texels' weights of the finest level that is asked for; coarser ones are in the caches.
-void LaplacianRepresentation::prefetch(const Place& place) const {
-  const Corners& c = place.corners;
-  const std::size_t slots = model_.slots();
-  const float* weights = &model_.weights[first_row_[place.level] * slots];
-  for (std::size_t t = 0; t < 4; ++t) {
-    const int texel = c.y[t / 2] * model_.pyramid.width_of(place.level) + c.x[t % 2];
-    __builtin_prefetch(weights + static_cast<std::size_t>(texel) * slots);
   }
 }
 
@@ -260,14 +269,7 @@ std::array<LaplacianRepresentation::Pairs, batch_lanes> LaplacianRepresentation:
     const std::array<Direction, batch_lanes>& view) const {
   std::array<Pairs, batch_lanes> pairs;
   if (!model_.interpolated) {
-    const std::size_t row = model_.levels() * model_.slots();
-    for (std::size_t i = 0; i < batch_lanes; ++i) {
-      pairs[i] = nearest_pair(light[i], view[i]);
-      // The eigen map is larger than the second cache: all sixteen rows are under way before the
-      // first is needed.
-      const float* eigen = &eigen_[pairs[i].index[0] * row];
-      for (std::size_t k = 0; k < row; k += 16) __builtin_prefetch(eigen + k);
-    }
+    for (std::size_t i = 0; i < batch_lanes; ++i) pairs[i] = nearest_pair(light[i], view[i]);
     return pairs;
   }
   const StencilBatch views = view_locator_.locate(model_.head.views, view);

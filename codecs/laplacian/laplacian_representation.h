@@ -10,9 +10,6 @@
 
 namespace weft::laplacian {
 
-/// Four slots side by side.
-using Vec4 = float __attribute__((vector_size(16)));
-
 /// Columns and rows of the four texels around uv.
 struct Corners {
   std::array<int, 2> x;
@@ -53,13 +50,12 @@ class LaplacianRepresentation : public Representation {
   std::array<Pairs, batch_lanes> pairs_of(const std::array<Direction, batch_lanes>& light,
                                           const std::array<Direction, batch_lanes>& view) const;
   Place place_of(Texcoord uv, float lod) const;
-  void prefetch(const Place& place) const;
   template <std::size_t Quads>
-  void add_level(int level, const Blend& blend, const Pairs& pairs, Vec4* sum) const;
+  void add_level(int level, const Blend& blend, const Pairs& pairs, float* sum) const;
   template <std::size_t Quads>
-  void add_boxes(const Corners& c, int grid, float weight, const Pairs& pairs, Vec4* sum) const;
+  void add_boxes(const Corners& c, int grid, float weight, const Pairs& pairs, float* sum) const;
   template <std::size_t Quads>
-  void add_levels(Texcoord uv, const Place& place, const Pairs& pairs, Vec4* sum) const;
+  void add_levels(Texcoord uv, const Place& place, const Pairs& pairs, float* sum) const;
   Rgb decode(const AppearanceQuery& query, const Place& place, const Pairs& pairs,
              float mean_y) const;
 
@@ -69,6 +65,7 @@ class LaplacianRepresentation : public Representation {
   NearestTable nearest_view_;
   NearestTable nearest_light_;
   std::vector<std::size_t> first_row_;  // of each level, in the model's weights
+  std::vector<float> weights_;          // the model's, four more behind them
   std::vector<float> eigen_;            // [view][light][level][slot], times scale; interpolated
                                         // ones over cos(theta_light)
 };

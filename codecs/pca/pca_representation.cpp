@@ -7,17 +7,14 @@ namespace weft::pca {
 
 namespace {
 
-// Eight components side by side: one register, also where there is no AVX-512.
+// Components side by side: sixteen, or eight where there are no more.
+using Vec16 = float __attribute__((vector_size(64)));
 using Vec8 = float __attribute__((vector_size(32)));
 using Vec4 = float __attribute__((vector_size(16)));
 
-Vec8 load8(const float* p) {
-  Vec8 v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-Vec4 load4(const float* p) {
-  Vec4 v;
+template <typename Lanes>
+Lanes load(const float* p) {
+  Lanes v;
   __builtin_memcpy(&v, p, sizeof v);
   return v;
 }
@@ -25,22 +22,36 @@ float sum_of(Vec8 v) {
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
-struct WeightedPair {
-  std::size_t pair;
-  float weight;
-};
+float sum_of(Vec16 v) {
+  Vec8 low;
+  Vec8 high;
+  __builtin_memcpy(&low, &v, sizeof low);
+  __builtin_memcpy(&high, reinterpret_cast<const char*>(&v) + sizeof low, sizeof high);
+  return sum_of(low + high);
+}
 
-std::size_t multiple_of_eight(std::size_t n) {
-  return (n + 7) / 8 * 8;
+std::size_t whole_lanes(std::size_t n) {
+  return n <= 8 ? 8 : (n + 15) / 16 * 16;
 }
 
 }  // namespace
+
+// The pairs that a query asks for, with their weights; those of group g, before end[g + 1], share
+// one set of texel weights.
+struct PcaRepresentation::Neighbours {
+  std::size_t count = 0;
+  std::size_t groups = 0;
+  std::array<std::size_t, 9> pair;
+  std::array<float, 9> weight;
+  std::array<std::size_t, 4> end{};
+  std::array<std::size_t, 3> set;
+};
 
 PcaRepresentation::PcaRepresentation(Model model)
     : model_(std::move(model)),
       view_locator_(model_.head.views),
       light_locator_(model_.head.lights),
-      lanes_(multiple_of_eight(model_.components)) {
+      lanes_(whole_lanes(model_.components)) {
   const std::size_t padded = model_.padded();
   const std::size_t rows = model_.weights.size() / padded;
   weights_.resize(rows * lanes_);
@@ -64,46 +75,56 @@ PcaRepresentation::PcaRepresentation(Model model)
   }
 }
 
-// About 30 ns of flat loops at 16 components, where two calls of `locate` take 60.
-Rgb PcaRepresentation::decode(const TexelStencil& texels, const Stencil& views,
-                              const Stencil& lights, float cosine) const {
-  std::array<WeightedPair, 9> pairs;
-  std::array<std::size_t, 4> group_end{};  // pairs that share their weights: all, or a view's
-  std::array<std::size_t, 3> group_set{};
-  std::size_t groups = 0;
-  std::size_t count = 0;
+PcaRepresentation::Neighbours PcaRepresentation::neighbours(const Stencil& views,
+                                                            const Stencil& lights,
+                                                            float cosine) const {
+  Neighbours n;
   for (std::size_t v = 0; v < 3; ++v) {
     if (views.weight[v] == 0) continue;
     for (std::size_t l = 0; l < 3; ++l) {
       if (lights.weight[l] == 0) continue;
-      pairs[count++] = {views.index[v] * model_.head.lights.size() + lights.index[l],
-                        views.weight[v] * lights.weight[l] * cosine};
+      n.pair[n.count] = views.index[v] * model_.head.lights.size() + lights.index[l];
+      n.weight[n.count++] = views.weight[v] * lights.weight[l] * cosine;
     }
-    if (model_.sets > 1 || groups == 0) group_set[groups++] = model_.sets > 1 ? views.index[v] : 0;
-    group_end[groups] = count;
+    if (model_.sets > 1 || n.groups == 0) n.set[n.groups++] = model_.sets > 1 ? views.index[v] : 0;
+    n.end[n.groups] = n.count;
   }
+  return n;
+}
 
-  Vec4 mean{};
-  for (std::size_t i = 0; i < count; ++i)
-    mean += load4(&mean_[4 * pairs[i].pair]) * pairs[i].weight;
-  std::array<Vec8, 3> sum{};
-  for (std::size_t g = 0; g < groups; ++g) {
-    const float* set = weights_.data() + group_set[g] * model_.head.texels() * lanes_;
-    for (std::size_t k = 0; k < lanes_; k += 8) {
-      Vec8 weight{};
+template <typename Lanes>
+std::array<float, 3> PcaRepresentation::component_sums(const TexelStencil& texels,
+                                                       const Neighbours& n) const {
+  constexpr std::size_t step = sizeof(Lanes) / sizeof(float);
+  std::array<Lanes, 3> sum{};
+  for (std::size_t g = 0; g < n.groups; ++g) {
+    const float* set = weights_.data() + n.set[g] * model_.head.texels() * lanes_;
+    for (std::size_t k = 0; k < lanes_; k += step) {
+      Lanes weight{};
       for (std::size_t t = 0; t < 4; ++t)
-        weight += load8(set + texels.index[t] * lanes_ + k) * texels.weight[t];
-      std::array<Vec8, 3> value{};
-      for (std::size_t i = group_end[g]; i < group_end[g + 1]; ++i) {
-        const float* basis = basis_.data() + 3 * pairs[i].pair * lanes_ + k;
-        for (std::size_t c = 0; c < 3; ++c) value[c] += load8(basis + c * lanes_) * pairs[i].weight;
+        weight += load<Lanes>(set + texels.index[t] * lanes_ + k) * texels.weight[t];
+      std::array<Lanes, 3> value{};
+      for (std::size_t i = n.end[g]; i < n.end[g + 1]; ++i) {
+        const float* basis = basis_.data() + 3 * n.pair[i] * lanes_ + k;
+        for (std::size_t c = 0; c < 3; ++c)
+          value[c] += load<Lanes>(basis + c * lanes_) * n.weight[i];
       }
       for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * value[c];
     }
   }
+  return {sum_of(sum[0]), sum_of(sum[1]), sum_of(sum[2])};
+}
+
+Rgb PcaRepresentation::decode(const TexelStencil& texels, const Stencil& views,
+                              const Stencil& lights, float cosine) const {
+  const Neighbours n = neighbours(views, lights, cosine);
+  Vec4 mean{};
+  for (std::size_t i = 0; i < n.count; ++i) mean += load<Vec4>(&mean_[4 * n.pair[i]]) * n.weight[i];
+  const std::array<float, 3> sum =
+      lanes_ == 8 ? component_sums<Vec8>(texels, n) : component_sums<Vec16>(texels, n);
   Rgb result;
   for (int c = 0; c < 3; ++c) {
-    const float value = mean[c] + sum_of(sum[c]);
+    const float value = mean[c] + sum[c];
     result[c] = value < 0 ? 0 : value;  // a NaN stays one
   }
   return result;

@@ -1,6 +1,8 @@
 // A fitted PCA, of all views or of each, that can be evaluated, saved and given to the GPU.
 #pragma once
 
+#include <array>
+
 #include "btf/raw_appearance.h"
 #include "codecs/pca/model.h"
 #include "codecs/representation.h"
@@ -34,13 +36,17 @@ class PcaRepresentation : public Representation {
   const Model& model() const { return model_; }
 
  private:
+  struct Neighbours;
+  Neighbours neighbours(const Stencil& views, const Stencil& lights, float cosine) const;
+  template <typename Lanes>
+  std::array<float, 3> component_sums(const TexelStencil& texels, const Neighbours& n) const;
   Rgb decode(const TexelStencil& texels, const Stencil& views, const Stencil& lights,
              float cosine) const;
 
   Model model_;
   BatchLocator view_locator_;
   BatchLocator light_locator_;
-  std::size_t lanes_;           // components a row below, a multiple of eight
+  std::size_t lanes_;           // components a row below, eight or a multiple of sixteen
   std::vector<float> weights_;  // [set][texel][lanes_]
   std::vector<float> basis_;    // [view][light][rgb][lanes_], times scale, over cos(theta_light)
   std::vector<float> mean_;     // [view][light][4], likewise
