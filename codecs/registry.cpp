@@ -11,6 +11,7 @@
 #include "btf/error.h"
 #include "codecs/cmf/cmf.h"
 #include "codecs/dfmf/dfmf.h"
+#include "codecs/hf/hf.h"
 #include "codecs/laplacian/laplacian.h"
 #include "codecs/pca/pca.h"
 #include "codecs/pca_view/pca_view.h"
@@ -31,7 +32,7 @@ std::string hint_for(const std::string& name) {
 }  // namespace
 
 std::span<const Codec> codecs() {
-  static const std::array table{raw_codec(),      cmf_codec(),       pca_codec(),
+  static const std::array table{raw_codec(),      cmf_codec(),       hf_codec(),  pca_codec(),
                                 pca_view_codec(), laplacian_codec(), dfmf_codec()};
   return table;
 }

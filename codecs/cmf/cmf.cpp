@@ -1,20 +1,13 @@
 #include "codecs/cmf/cmf.h"
 
-#include "codecs/cmf/cmf_file.h"
-#include "codecs/cmf/cmf_representation.h"
 #include "codecs/cmf/fit.h"
+#include "codecs/factor_maps/factor_map_representation.h"
+#include "codecs/factor_maps/model_file.h"
 
 namespace weft {
 
-namespace cmf {
-
-void CmfRepresentation::save(const std::filesystem::path& folder) const {
-  write_model(folder, model_);
-}
-
-}  // namespace cmf
-
 Codec cmf_codec() {
+  using factor_maps::FactorMapRepresentation;
   return {
       .name = "cmf",
       .summary = "chained matrix factorisation: maps over light, half-vector and view, clustered",
@@ -23,10 +16,10 @@ Codec cmf_codec() {
       .fit = [](std::shared_ptr<const Btf> btf, const Settings& parameters,
                 Progress& progress) -> std::unique_ptr<Representation> {
         const cmf::FitOptions options = cmf::fit_options(parameters);
-        return std::make_unique<cmf::CmfRepresentation>(cmf::fit(*btf, options, progress));
+        return std::make_unique<FactorMapRepresentation>(cmf::fit(btf, options, progress));
       },
       .load = [](const std::filesystem::path& folder) -> std::unique_ptr<Representation> {
-        return std::make_unique<cmf::CmfRepresentation>(cmf::read_model(folder));
+        return std::make_unique<FactorMapRepresentation>(factor_maps::read_model(folder, "cmf"));
       }};
 }
 

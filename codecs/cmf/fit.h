@@ -1,25 +1,22 @@
-// Fits a CMF to a BTF: chain, normalisation, clustering, quantisation (paper 004, sections 4 and
-// 5).
+// Fits a CMF to a BTF: rotation, chain, and what `factor_maps::assemble` makes of the maps.
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <string>
 
 #include "btf/btf.h"
 #include "btf/progress.h"
 #include "codecs/cmf/chain.h"
-#include "codecs/cmf/model.h"
+#include "codecs/factor_maps/model.h"
+#include "codecs/factor_maps/storage.h"
 #include "settings/settings.h"
 
 namespace weft::cmf {
 
 struct FitOptions {
   ChainOptions chain;
-  bool eight_bit = true;    ///< textures of 8 bits, otherwise float
-  bool clustered = true;    ///< codebooks and index maps, otherwise every texel's own maps
-  int clusters = 256;       ///< codebook size a factor
-  bool refit_scale = true;  ///< solve the scale map again once the maps are what the GPU gets
-  std::uint64_t seed = 0;   ///< of k-means++
+  factor_maps::StorageOptions storage;
+  bool rotate = false;  ///< turn each ABRDF into its direction of greatest anisotropy first
 };
 
 /// @throws Error  for an unknown key or a value out of range.
@@ -32,6 +29,7 @@ std::string parameter_help();
 std::string to_json(const FitOptions& options);
 
 /// @throws Error  naming view, light and texel of a value that is not finite and >= 0.
-Model fit(const Btf& btf, const FitOptions& options, Progress& progress);
+factor_maps::Model fit(const std::shared_ptr<const Btf>& btf, const FitOptions& options,
+                       Progress& progress);
 
 }  // namespace weft::cmf

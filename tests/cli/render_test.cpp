@@ -78,7 +78,8 @@ TEST_CASE("render refuses what it cannot do in one sentence, and leaves no pictu
 
 TEST_CASE("A level that nothing in the scene has is refused") {
   const RenderFolder folder;
-  REQUIRE(run_weft({"compress", "small.btf", "-o", "small.cmf", "--set", "clustered=false"},
+  REQUIRE(run_weft({"compress", "small.btf", "-o", "small.cmf", "--set", "clustered=false", "--set",
+                    "levels=false"},
                    folder.path)
               .exit_code == 0);
   const auto draw = [&](const std::vector<std::string>& command, const std::string& lod) {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "codecs/cmf/rank_one.h"
+#include "codecs/cmf/half_link.h"
+#include "codecs/cmf/low_rank.h"
 #include "codecs/representation.h"
 #include "codecs/sample_error.h"
 #include "tests/codecs/synthetic_btf.h"
@@ -58,7 +60,7 @@ TEST_CASE("Refining reaches what the chain leaves of P Q R") {
         return light_pattern(x, y, l) * half_pattern(x, y, (l + v).normalized()) *
                view_pattern(x, y, v);
       });
-  const double chain = cmf_error(btf, {"bits=float", "clustered=false"});
+  const double chain = cmf_error(btf, {"bits=float", "clustered=false", "refine=0"});
   const double refined = cmf_error(btf, {"bits=float", "clustered=false", "refine=50"});
   INFO("P Q R: chain " << chain << ", refined " << refined);
   CHECK(refined < 0.01);
@@ -91,8 +93,8 @@ TEST_CASE("Eight bits add little to the error of refined maps of glossy, uneven 
 TEST_CASE("The weighted rank-1 step is better than the plain one where it is seen") {
   const auto btf = realistic_btf(16, "ubo81");
   for (const std::string factors : {"light,view", "light,half,view"}) {
-    const std::vector<std::string> parameters{"factors=" + factors, "bits=float",
-                                              "clustered=false"};
+    std::vector<std::string> parameters{"factors=" + factors, "bits=float", "clustered=false"};
+    if (factors == "light,half,view") parameters.emplace_back("refine=0");
     auto plain_parameters = parameters;
     plain_parameters.emplace_back("rank_one=plain");
     const double weighted = cmf_error(btf, parameters);
@@ -155,5 +157,159 @@ TEST_CASE("8 bits add less than 5 % to the error") {
     INFO("clustered=" << clustered << ": float " << in_floats << ", 8-bit " << in_bytes);
     CHECK(in_bytes < 1.05 * in_floats);
     CHECK(in_floats < 0.35);
+  }
+}
+
+TEST_CASE("Two terms find a sum of two products, signed or not") {
+  const auto btf = synthetic_btf(
+      3, 2, "ubo81", "ubo81", [](int x, int y, const Direction& l, const Direction& v) {
+        const float lobe =
+            std::pow(std::max(l.x, 0.0F), 2.0F) * std::pow(std::max(v.x, 0.0F), 2.0F);
+        return light_pattern(x, y, l) * view_pattern(x, y, v) + Rgb(4, 2, 1) * lobe;
+      });
+  const std::vector<std::string> common{"factors=light,view", "clustered=false", "levels=false"};
+  const auto error = [&](const std::string& terms, const std::string& bits) {
+    std::vector<std::string> parameters = common;
+    parameters.insert(parameters.end(), {"terms=" + terms, "bits=" + bits});
+    return cmf_error(btf, parameters);
+  };
+  const double one = error("1", "float");
+  const double two = error("2", "float");
+  const double three = error("3", "float");
+  const double two_in_bytes = error("2", "8");
+  INFO("one term " << one << ", two " << two << ", three " << three << ", two in 8 bits "
+                   << two_in_bytes);
+  CHECK(one > 0.1);
+  CHECK(two < 0.02);
+  CHECK(three < 0.02);
+  CHECK(two_in_bytes < 0.03);
+}
+
+TEST_CASE("The factor over the difference takes what depends on it") {
+  const auto btf =
+      synthetic_btf(2, 1, "fibonacci:120", "fibonacci:120",
+                    [](int x, int y, const Direction& l, const Direction& v) {
+                      const Direction half = (l + v).normalized();
+                      return half_pattern(x, y, half) * (0.1F + std::pow(1 - (l ^ half), 2.0F) * 4);
+                    });
+  const std::vector<std::string> three{"bits=float", "clustered=false", "refine=10"};
+  std::vector<std::string> four = three;
+  four.emplace_back("factors=light,half,difference,view");
+  const double without = cmf_error(btf, three);
+  const double with = cmf_error(btf, four);
+  four.emplace_back("terms=2");
+  const double two_terms = cmf_error(btf, four);
+  INFO("without " << without << ", with " << with << ", two terms " << two_terms);
+  CHECK(with < 0.5 * without);
+  CHECK(two_terms < 1.1 * with);
+}
+
+TEST_CASE("Either order of the chain explains the data, and refined they end alike") {
+  const auto btf = realistic_btf(4, "ubo81");
+  const auto error = [&](const std::string& order, const std::string& rounds) {
+    return cmf_error(btf, {"bits=float", "clustered=false", "order=" + order, "refine=" + rounds});
+  };
+  CHECK(error("half-last", "0") < 0.5);
+  CHECK(error("half-first", "0") != error("half-last", "0"));
+  CHECK(error("half-last", "50") == Approx(error("half-first", "50")).epsilon(0.3));
+}
+
+TEST_CASE("Texels that are one ABRDF turned share a map where they are turned back") {
+  const auto btf =
+      synthetic_btf(8, 4, "fibonacci:150", "fibonacci:150",
+                    [](int x, int y, const Direction& l, const Direction& v) {
+                      const double azimuth = 2 * std::numbers::pi * (4 * y + x % 4) / 16;
+                      const Direction normal = from_spherical(0.6, azimuth);
+                      const float h = (l + v).normalized() ^ normal;
+                      const float lit = std::max(l ^ normal, 0.0F);
+                      return Rgb(1, 1, 1) * (0.2F * lit + 2 * std::pow(std::max(h, 0.0F), 8.0F));
+                    });
+  const std::vector<std::string> few{"clusters=2", "levels=false"};
+  std::vector<std::string> turned = few;
+  turned.emplace_back("rotate=true");
+  const double without = cmf_error(btf, few);
+  const double with = cmf_error(btf, turned);
+  INFO("as they are " << without << ", turned " << with);
+  CHECK(with < 0.4 * without);
+}
+
+TEST_CASE("Levels of detail are those of the data") {
+  const auto btf = realistic_btf(8, "ubo81");
+  Progress progress;
+  const auto parameters = Settings::from_text("", "test", {"bits=float", "clustered=false"});
+  const auto fitted = codec_named("cmf").fit(btf, parameters, progress);
+  const auto raw = codec_named("raw").fit(btf, Settings(), progress);
+  CHECK(fitted->has_lod());
+  const auto difference = [&](const Appearance& a, float lod_a, const Appearance& b, float lod_b) {
+    double error = 0;
+    double square = 0;
+    for (std::size_t i = 0; i < 81; i += 4) {
+      for (std::size_t j = 0; j < 81; j += 3) {
+        const Direction& l = btf->lights()[i];
+        const Direction& v = btf->views()[j];
+        const Rgb x = a.evaluate({0.31F, 0.57F}, l, v, lod_a);
+        const Rgb y = b.evaluate({0.31F, 0.57F}, l, v, lod_b);
+        error += (x - y).dot(x - y);
+        square += y.dot(y);
+      }
+    }
+    return std::sqrt(error / square);
+  };
+  for (const float lod : {0.0F, 1.0F, 1.6F, 2.0F, 3.0F, 9.0F}) {
+    INFO("lod " << lod);
+    CHECK(difference(*fitted, lod, *raw, lod) < 0.15);
+  }
+  CHECK(difference(*fitted, 0, *raw, 3) > 0.3);
+}
+
+TEST_CASE("A light on the horizon does not darken what is near it") {
+  std::vector<Direction> lights;
+  for (const double theta : {0.0, 40.0, 70.0, 90.0}) {
+    for (int i = 0; i < (theta == 0 ? 1 : 8); ++i) {
+      lights.push_back(from_spherical(radians(theta), radians(45.0 * i)));
+    }
+  }
+  for (Direction& light : lights) light.z = std::max(light.z, 0.0F);
+  Btf btf(2, 2, HemisphereSampling(named_directions("ubo81")), HemisphereSampling(lights),
+          PixelType::float32);
+  for (int t = 0; t < 4; ++t) {
+    for (std::size_t v = 0; v < btf.views().size(); ++v) {
+      for (std::size_t l = 0; l < lights.size(); ++l) {
+        btf.set(l, v, t % 2, t / 2, Rgb(1, 0.5F, 0.25F) * (lights[l].z < 1e-5F ? 0 : lights[l].z));
+      }
+    }
+  }
+  Progress progress;
+  const auto fitted =
+      codec_named("cmf").fit(std::make_shared<const Btf>(std::move(btf)), Settings(), progress);
+  for (const double theta : {0.0, 60.0, 80.0, 85.0, 89.0, 89.9}) {
+    const Direction light = from_spherical(radians(theta), 0.3);
+    const Rgb value = fitted->evaluate({0.2F, 0.6F}, light, from_spherical(0.5, 2), 0);
+    INFO("theta " << theta);
+    CHECK(value.x == Approx(light.z).epsilon(0.02));
+    CHECK(value.z == Approx(0.25 * light.z).epsilon(0.02));
+  }
+}
+
+TEST_CASE("With few pairs, refining moves what lies between them too") {
+  const HemisphereSampling sampling(named_directions("regular:3x6"));
+  const factor_maps::ParabolicMap map(32);
+  const cmf::HalfLink link(sampling, sampling, map, 8, false, 1);
+  const auto constant = [](float value, std::size_t count) {
+    cmf::Lanes lanes;
+    std::fill_n(lanes.lane, cmf::lane_count, value);
+    return cmf::LaneVector(count, lanes);
+  };
+  cmf::HalfMaps maps = link.start(constant(1, 18 * 18));
+  const std::vector<double> weights(18, 1.0);
+  link.update(constant(5, 18 * 18), constant(1, 18 * 18), weights, maps);
+  for (int i = 0; i < 500; ++i) {
+    const auto turn = [&](double step) { return std::fmod(step * i, 1.0); };
+    const Direction l = from_spherical(1.2 * turn(0.414), 2 * std::numbers::pi * turn(0.303));
+    const Direction v = from_spherical(1.2 * turn(0.732), 2 * std::numbers::pi * turn(0.236));
+    const auto taps = map.taps(factor_maps::half_vector(l, v));
+    float value = 0;
+    for (std::size_t t = 0; t < 4; ++t) value += taps.weight[t] * maps.half[taps.index[t]][7];
+    REQUIRE(value == Approx(5).epsilon(1e-3));
   }
 }

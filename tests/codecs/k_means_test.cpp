@@ -1,6 +1,6 @@
 // Clusters that are there are found, and the randomness is the seed's alone.
 
-#include "codecs/cmf/k_means.h"
+#include "codecs/factor_maps/clustering.h"
 
 #include <tbb/global_control.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 using namespace weft;
-using namespace weft::cmf;
+using namespace weft::factor_maps;
 
 namespace {
 
@@ -39,7 +39,7 @@ TEST_CASE("k-means finds separated groups, for any seed") {
   const RowMatrix data = groups(12);
   for (const std::uint64_t seed : {0, 1, 2, 3, 4}) {
     Progress progress;
-    const Clustering clustering = k_means(data, 12, seed, progress);
+    const Clustering clustering = k_means(data, 12, seed, Prototypes::means, progress);
     for (Eigen::Index r = 0; r < data.rows(); ++r) {
       CHECK(clustering.index[r] == clustering.index[r % 12]);
     }
@@ -52,7 +52,7 @@ TEST_CASE("k-means makes fewer clusters where rows repeat, and is exact then") {
   RowMatrix data = groups(5);
   for (Eigen::Index r = 5; r < data.rows(); ++r) data.row(r) = data.row(r % 5);
   Progress progress;
-  const Clustering clustering = k_means(data, 256, 7, progress);
+  const Clustering clustering = k_means(data, 256, 7, Prototypes::means, progress);
   CHECK(clustering.prototypes.rows() == 5);
   CHECK(squared_error(data, clustering) < 1e-9);
 }
@@ -62,7 +62,7 @@ TEST_CASE("k-means gets better with more clusters, and one cluster is the mean")
   double previous = 1e9;
   for (const int clusters : {1, 2, 4, 8, 16}) {
     Progress progress;
-    const Clustering clustering = k_means(data, clusters, 0, progress);
+    const Clustering clustering = k_means(data, clusters, 0, Prototypes::means, progress);
     const double error = squared_error(data, clustering);
     CHECK(error < previous);
     previous = error;
@@ -77,10 +77,64 @@ TEST_CASE("k-means is the same for one thread and for two") {
   const auto run = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     Progress progress;
-    return k_means(data, 32, 0, progress);
+    return k_means(data, 32, 0, Prototypes::means, progress);
   };
   const Clustering one = run(1);
   const Clustering two = run(2);
   CHECK(one.index == two.index);
   CHECK(one.prototypes == two.prototypes);
+}
+
+TEST_CASE("Both methods and both metrics find separated groups") {
+  const RowMatrix data = groups(12);
+  for (const ClusterMethod method : {ClusterMethod::k_means, ClusterMethod::tree}) {
+    for (const ClusterMetric metric : {ClusterMetric::euclidean, ClusterMetric::cosine}) {
+      Progress progress;
+      const Codebook book = cluster(data, {method, metric, 12, 0}, progress);
+      const auto& index = book.clustering.index;
+      CHECK(std::set(index.begin(), index.end()).size() == 12);
+      double error = 0;
+      for (Eigen::Index r = 0; r < data.rows(); ++r) {
+        CHECK(index[r] == index[r % 12]);
+        const Eigen::RowVectorXf answer =
+            book.clustering.prototypes.row(index[r]) * book.amplitude[r];
+        error += (data.row(r) - answer).squaredNorm();
+      }
+      CHECK(error < 240 * 40 * 1e-4);
+    }
+  }
+}
+
+TEST_CASE("By angle, rows that differ in length alone are one cluster") {
+  RowMatrix data(30, 40);
+  for (Eigen::Index r = 0; r < 30; ++r) {
+    data.row(r) = groups(3).row(r % 3) * static_cast<float>(1 + r * r);
+  }
+  Progress progress;
+  const Codebook by_angle =
+      cluster(data, {ClusterMethod::k_means, ClusterMetric::cosine, 3, 1}, progress);
+  const Codebook by_distance =
+      cluster(data, {ClusterMethod::k_means, ClusterMetric::euclidean, 3, 1}, progress);
+  bool distance_splits = false;
+  for (Eigen::Index r = 0; r < 30; ++r) {
+    CHECK(by_angle.clustering.index[r] == by_angle.clustering.index[r % 3]);
+    const Eigen::RowVectorXf answer =
+        by_angle.clustering.prototypes.row(by_angle.clustering.index[r]) * by_angle.amplitude[r];
+    CHECK((data.row(r) - answer).norm() < 1e-3 * data.row(r).norm());
+    distance_splits =
+        distance_splits || by_distance.clustering.index[r] != by_distance.clustering.index[r % 3];
+  }
+  CHECK(distance_splits);
+}
+
+TEST_CASE("A tree of equal rows is one exact cluster, and black rows do no harm") {
+  for (const float value : {0.0F, 3.0F}) {
+    const RowMatrix data = RowMatrix::Constant(20, 7, value);
+    for (const ClusterMetric metric : {ClusterMetric::euclidean, ClusterMetric::cosine}) {
+      Progress progress;
+      const Codebook book = cluster(data, {ClusterMethod::tree, metric, 8, 0}, progress);
+      CHECK(book.clustering.prototypes.rows() == 1);
+      CHECK((book.clustering.prototypes.row(0) * book.amplitude[5] - data.row(5)).norm() < 1e-5);
+    }
+  }
 }

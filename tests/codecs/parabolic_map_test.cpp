@@ -1,17 +1,18 @@
 // Parabolic maps, the half / difference parameterisation, and the linear operators made of them.
 
-#include "codecs/cmf/parabolic_map.h"
+#include "codecs/factor_maps/parabolic_map.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "codecs/cmf/half_difference.h"
-#include "codecs/cmf/rank_one.h"
-#include "codecs/cmf/sample_map.h"
+#include "codecs/cmf/low_rank.h"
+#include "codecs/factor_maps/half_difference.h"
+#include "codecs/factor_maps/sample_map.h"
 
 using namespace weft;
 using namespace weft::cmf;
+using namespace weft::factor_maps;
 
 namespace {
 

@@ -1,0 +1,100 @@
+#include "codecs/factor_maps/clustering.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace weft::factor_maps {
+
+namespace {
+
+using Index = Eigen::Index;
+
+struct Node {
+  std::vector<Index> rows;
+  Eigen::RowVectorXf mean;
+  double error = 0;  // sum of squared distances to the mean
+};
+
+RowMatrix rows_of(const RowMatrix& data, const std::vector<Index>& rows) {
+  RowMatrix part(rows.size(), data.cols());
+  for (std::size_t i = 0; i < rows.size(); ++i) part.row(i) = data.row(rows[i]);
+  return part;
+}
+
+Node node_of(const RowMatrix& data, std::vector<Index> rows) {
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(data.cols());
+  for (const Index r : rows) sum += data.row(r).cast<double>();
+  Node node{std::move(rows), {}, 0};
+  node.mean = (sum / static_cast<double>(node.rows.size())).cast<float>();
+  for (const Index r : node.rows) node.error += (data.row(r) - node.mean).squaredNorm();
+  return node;
+}
+
+// Empty halves where all rows are equal.
+std::pair<std::vector<Index>, std::vector<Index>> halves(const RowMatrix& data, const Node& node,
+                                                         std::uint64_t seed) {
+  Progress silent;
+  const Clustering two = k_means(rows_of(data, node.rows), 2, seed, Prototypes::means, silent);
+  std::pair<std::vector<Index>, std::vector<Index>> parts;
+  for (std::size_t i = 0; i < node.rows.size(); ++i) {
+    (two.index[i] == 0 ? parts.first : parts.second).push_back(node.rows[i]);
+  }
+  return parts;
+}
+
+Clustering tree(const RowMatrix& data, int clusters, std::uint64_t seed) {
+  std::vector<Index> all(data.rows());
+  for (Index r = 0; r < data.rows(); ++r) all[r] = r;
+  std::vector<Node> leaves{node_of(data, std::move(all))};
+  while (static_cast<int>(leaves.size()) < clusters) {
+    const auto worst = std::ranges::max_element(leaves, {}, &Node::error);
+    if (!(worst->error > 0)) break;
+    auto [left, right] = halves(data, *worst, seed + leaves.size());
+    if (left.empty() || right.empty()) {  // differences that rounding hides
+      worst->error = 0;
+      continue;
+    }
+    *worst = node_of(data, std::move(left));
+    leaves.push_back(node_of(data, std::move(right)));
+  }
+  Clustering result{RowMatrix(leaves.size(), data.cols()), {}};
+  result.index.resize(data.rows());
+  for (std::size_t c = 0; c < leaves.size(); ++c) {
+    result.prototypes.row(c) = leaves[c].mean;
+    for (const Index r : leaves[c].rows) result.index[r] = static_cast<std::uint16_t>(c);
+  }
+  return result;
+}
+
+}  // namespace
+
+Codebook cluster(RowMatrix rows, const ClusterOptions& options, Progress& progress) {
+  const bool cosine = options.metric == ClusterMetric::cosine;
+  Eigen::VectorXf norms;
+  if (cosine) {
+    norms = rows.rowwise().norm();
+    for (Index r = 0; r < rows.rows(); ++r) {
+      if (norms[r] > 0) rows.row(r) /= norms[r];
+    }
+  }
+  Codebook book;
+  book.clustering = options.method == ClusterMethod::tree
+                        ? tree(rows, options.clusters, options.seed)
+                        : k_means(rows, options.clusters, options.seed,
+                                  cosine ? Prototypes::directions : Prototypes::means, progress);
+  book.amplitude.assign(rows.rows(), 1.0F);
+  if (!cosine) return book;
+  RowMatrix& prototypes = book.clustering.prototypes;
+  for (Index c = 0; c < prototypes.rows(); ++c) {
+    const float largest = prototypes.row(c).cwiseAbs().maxCoeff();
+    if (largest > 0) prototypes.row(c) /= largest;
+  }
+  for (Index r = 0; r < rows.rows(); ++r) {
+    const auto prototype = prototypes.row(book.clustering.index[r]);
+    const float square = prototype.squaredNorm();
+    book.amplitude[r] = square > 0 ? norms[r] * rows.row(r).dot(prototype) / square : 0.0F;
+  }
+  return book;
+}
+
+}  // namespace weft::factor_maps

@@ -1,0 +1,158 @@
+#include "codecs/factor_maps/storage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "codecs/factor_maps/scale_map.h"
+
+namespace weft::factor_maps {
+
+StorageOptions storage_options(const Settings& parameters) {
+  StorageOptions options;
+  options.eight_bit = parameters.choice("bits", {"8", "float"}) == "8";
+  options.clustered = parameters.flag("clustered", options.clustered);
+  options.levels = parameters.flag("levels", options.levels);
+  options.refit_scale = parameters.flag("refit_scale", options.refit_scale);
+  options.resolution =
+      static_cast<int>(parameters.integer("resolution", options.resolution, 2, 256));
+  ClusterOptions& clustering = options.clustering;
+  clustering.clusters =
+      static_cast<int>(parameters.integer("clusters", clustering.clusters, 1, 256));
+  clustering.method = parameters.choice("clustering", {"k-means", "tree"}) == "tree"
+                          ? ClusterMethod::tree
+                          : ClusterMethod::k_means;
+  clustering.metric = parameters.choice("metric", {"euclidean", "cosine"}) == "cosine"
+                          ? ClusterMetric::cosine
+                          : ClusterMetric::euclidean;
+  clustering.seed = static_cast<std::uint64_t>(
+      parameters.integer("seed", 0, 0, std::numeric_limits<std::int64_t>::max()));
+  return options;
+}
+
+std::string storage_help() {
+  return "bits = 8                  8 | float: what the textures hold\n"
+         "clustered = true          codebooks and index maps; false: every texel keeps its own "
+         "maps\n"
+         "clustering = k-means      k-means | tree: how a codebook is found\n"
+         "clusters = 256            size of each factor's codebook, 1 to 256\n"
+         "levels = true             mip levels, fitted to the data's and sharing the codebooks\n"
+         "metric = euclidean        euclidean | cosine: which maps are alike\n"
+         "refit_scale = true        solve the scale map again after clustering and quantisation\n"
+         "resolution = 32           texels a side of each parabolic map, 2 to 256\n"
+         "seed = 0                  of k-means++\n";
+}
+
+void add_to(nlohmann::json& parameters, const StorageOptions& options) {
+  const ClusterOptions& clustering = options.clustering;
+  parameters["bits"] = options.eight_bit ? "8" : "float";
+  parameters["clustered"] = options.clustered;
+  parameters["clustering"] = clustering.method == ClusterMethod::tree ? "tree" : "k-means";
+  parameters["clusters"] = clustering.clusters;
+  parameters["levels"] = options.levels;
+  parameters["metric"] = clustering.metric == ClusterMetric::cosine ? "cosine" : "euclidean";
+  parameters["refit_scale"] = options.refit_scale;
+  parameters["resolution"] = options.resolution;
+  parameters["seed"] = clustering.seed;
+}
+
+FittedFactors::FittedFactors(std::size_t texels, const StorageOptions& options)
+    : scale(3 * texels, 1.0F), resolution(options.resolution) {}
+
+void FittedFactors::add(Projection projection, int terms) {
+  const auto texels = static_cast<Eigen::Index>(scale.size() / 3);
+  factors.push_back({projection, terms, RowMatrix(texels, 3 * terms * resolution * resolution)});
+}
+
+void store(const LaneVector& maps, std::span<const std::size_t> texels, std::size_t factor,
+           FittedFactors& fitted) {
+  for (int k = 0; k < 3 * static_cast<int>(texels.size()); ++k) {
+    float largest = 0;
+    for (const Lanes& value : maps) largest = std::max(largest, std::abs(value[k]));
+    const std::size_t texel = texels[k / 3];
+    float* row = fitted.factors[factor].maps.row(static_cast<Eigen::Index>(texel)).data();
+    for (std::size_t t = 0; t < maps.size(); ++t) {
+      row[3 * t + k % 3] = largest > 0 ? maps[t][k] / largest : 0.0F;
+    }
+    fitted.scale[3 * texel + k % 3] *= largest;
+  }
+}
+
+namespace {
+
+ValueArray value_array(const float* values, std::size_t count, bool eight_bit) {
+  std::vector<float> floats(values, values + count);
+  if (eight_bit) return {to_bytes(floats), {}};
+  return {{}, std::move(floats)};
+}
+
+// Section 5: a codebook of prototypes and an index map a factor, RGB and terms jointly.
+void cluster_factor(RowMatrix maps, std::size_t factor, const StorageOptions& options, Model& model,
+                    std::vector<float>& scale, Progress& progress) {
+  progress.start(max_k_means_iterations, "iterations");
+  ClusterOptions clustering = options.clustering;
+  clustering.seed += factor;
+  const Codebook book = cluster(std::move(maps), clustering, progress);
+  const RowMatrix& prototypes = book.clustering.prototypes;
+  model.factors[factor].maps = value_array(prototypes.data(), prototypes.size(), options.eight_bit);
+  const std::size_t channels = model.index_channels();
+  for (std::size_t texel = 0; texel < model.texels(); ++texel) {
+    model.index[channels * texel + factor] =
+        static_cast<std::uint8_t>(book.clustering.index[texel]);
+    for (std::size_t c = 0; c < 3; ++c) scale[3 * texel + c] *= book.amplitude[texel];
+  }
+}
+
+// Section 6: the scale map divided by its largest value in each channel (see `Model::scale`).
+void store_scale(std::vector<float> scale, bool eight_bit, Model& model) {
+  Rgb largest(0, 0, 0);
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    largest[static_cast<int>(i % 3)] = std::max(largest[static_cast<int>(i % 3)], scale[i]);
+  }
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    const float divisor = largest[static_cast<int>(i % 3)];
+    const float share = divisor > 0 ? std::max(scale[i], 0.0F) / divisor : 0;
+    scale[i] = eight_bit ? std::sqrt(share) : share;
+  }
+  model.scale_max = largest;
+  model.scale = value_array(scale.data(), scale.size(), eight_bit);
+}
+
+}  // namespace
+
+Model assemble(const TexelSource& source, FittedFactors fitted, const StorageOptions& options,
+               const std::string& codec, const std::string& parameters, Progress& progress) {
+  Model model{.codec = codec,
+              .levels = source.levels(),
+              .resolution = options.resolution,
+              .clustered = options.clustered,
+              .factors = {},
+              .index = {},
+              .rotation = std::move(fitted.rotation),
+              .scale = {},
+              .scale_max = Rgb(0, 0, 0),
+              .views = source.finest().views(),
+              .lights = source.finest().lights(),
+              .parameters = parameters,
+              .provenance = source.finest().provenance};
+  for (const FittedFactor& factor : fitted.factors) {
+    model.factors.push_back({factor.projection, factor.terms, {}});
+  }
+  if (options.clustered) model.index.resize(model.index_channels() * model.texels());
+  for (std::size_t f = 0; f < fitted.factors.size(); ++f) {
+    RowMatrix maps = std::move(fitted.factors[f].maps);  // freed at the end of its turn
+    if (options.clustered)
+      cluster_factor(std::move(maps), f, options, model, fitted.scale, progress);
+    else
+      model.factors[f].maps = value_array(maps.data(), maps.size(), options.eight_bit);
+  }
+  std::vector<float> scale =
+      options.refit_scale ? least_squares_scale(source, model) : std::move(fitted.scale);
+  store_scale(std::move(scale), options.eight_bit, model);
+  progress.finish();
+  return model;
+}
+
+}  // namespace weft::factor_maps

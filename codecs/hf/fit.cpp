@@ -1,0 +1,205 @@
+#include "codecs/hf/fit.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "btf/error.h"
+#include "codecs/factor_maps/sample_map.h"
+#include "codecs/hf/cross_validation.h"
+#include "codecs/hf/log_system.h"
+
+namespace weft::hf {
+
+using factor_maps::FittedFactors;
+using factor_maps::lane_count;
+using factor_maps::Lanes;
+using factor_maps::ParabolicMap;
+using factor_maps::Projection;
+using factor_maps::SampleMap;
+using factor_maps::texels_a_block;
+using factor_maps::TexelSource;
+
+FitOptions fit_options(const Settings& parameters) {
+  FitOptions options;
+  options.storage = factor_maps::storage_options(parameters);
+  try {
+    options.lambda = parameters.number("lambda", *options.lambda, 1e-4, 1e4);
+  } catch (const Error&) {
+    if (parameters.choice("lambda", {"auto", "a number from 1e-4 to 1e4"}) != "auto") throw;
+    options.lambda.reset();
+  }
+  options.floor = parameters.number("floor", options.floor, 1e-9, 1);
+  parameters.finish();
+  return options;
+}
+
+std::string parameter_help() {
+  return factor_maps::storage_help() +
+         "floor = 0.1               least value in the logarithm, as a share of the ABRDF's mean\n"
+         "lambda = 1                how much the maps are smoothed, 1e-4 to 1e4; auto: by "
+         "generalised cross validation\n";
+}
+
+namespace {
+
+std::string to_json(const FitOptions& options, double lambda) {
+  nlohmann::json json{{"floor", options.floor}, {"lambda", lambda}};
+  if (!options.lambda) json["lambda_found_by"] = "generalised cross validation";
+  factor_maps::add_to(json, options.storage);
+  return json.dump();
+}
+
+// Natural logarithms of what is raised to the floor; 0 in a lane of zeros.
+DoubleVector logarithms(const LaneVector& f, double floor) {
+  DoubleLanes mean;
+  for (const Lanes& pair : f) {
+    for (int k = 0; k < lane_count; ++k) mean[k] += pair[k];
+  }
+  DoubleVector result(f.size());
+  for (std::size_t pair = 0; pair < f.size(); ++pair) {
+    for (int k = 0; k < lane_count; ++k) {
+      const double least = floor * mean[k] / static_cast<double>(f.size());
+      result[pair][k] = least > 0 ? std::log(std::max<double>(f[pair][k], least)) : 0.0;
+    }
+  }
+  return result;
+}
+
+class Solver {
+ public:
+  Solver(const HemisphereSampling& lights, const HemisphereSampling& views, int resolution)
+      : lookup_(lights, views, ParabolicMap(resolution)),
+        touched_(lookup_.touched()),
+        light_map_(lights, ParabolicMap(resolution)),
+        view_map_(views, ParabolicMap(resolution)) {}
+
+  const LogLookup& lookup() const { return lookup_; }
+
+  /// The factors' maps, 0..1, whose product is to be multiplied by exp(shift).
+  struct Solution {
+    std::array<LaneVector, factor_count> maps;
+    DoubleLanes shift;
+  };
+  Solution solve(const LogSystem& system, const DoubleVector& log_f) const {
+    DoubleVector right = lookup_.transposed_times(log_f);
+    const double weight = 1.0 / static_cast<double>(lookup_.pairs());
+    for (DoubleLanes& value : right) {
+      for (int k = 0; k < lane_count; ++k) value[k] *= weight;
+    }
+    const DoubleVector x = system.solve(right);
+    Solution solution;
+    for (int f = 0; f < factor_count; ++f) solution.maps[f] = exponential(x, f, solution.shift);
+    return solution;
+  }
+
+ private:
+  // Beyond the touched texels the Laplacian extrapolates, and exp makes that a power: they are cut
+  // to the largest of those, or they would take all the steps of 8 bits.
+  LaneVector exponential(const DoubleVector& x, int factor, DoubleLanes& shift) const {
+    const std::size_t first = factor * lookup_.map_texels();
+    DoubleLanes largest;
+    std::fill_n(largest.lane, lane_count, -std::numeric_limits<double>::infinity());
+    for (std::size_t t = first; t < first + lookup_.map_texels(); ++t) {
+      for (int k = 0; touched_[t] && k < lane_count; ++k)
+        largest[k] = std::max(largest[k], x[t][k]);
+    }
+    LaneVector map(lookup_.map_texels());
+    for (std::size_t t = 0; t < map.size(); ++t) {
+      for (int k = 0; k < lane_count; ++k)
+        map[t][k] = static_cast<float>(std::exp(std::min(x[first + t][k] - largest[k], 0.0)));
+    }
+    for (int k = 0; k < lane_count; ++k) shift[k] += largest[k];
+    if (factor == 1) return map;
+    // The logarithm was filtered in the fit, the map is when it is decoded: over light and view the
+    // map is changed so that its own lookup returns what was fitted.
+    const SampleMap& maker = factor == 0 ? light_map_ : view_map_;
+    LaneVector samples(maker.taps().size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      DoubleLanes sum;
+      for (std::size_t t = 0; t < 4; ++t) {
+        for (int k = 0; k < lane_count; ++k)
+          sum[k] += maker.taps()[i].weight[t] * x[first + maker.taps()[i].index[t]][k];
+      }
+      for (int k = 0; k < lane_count; ++k)
+        samples[i][k] = static_cast<float>(std::exp(sum[k] - largest[k]));
+    }
+    return maker.corrected(std::move(map), samples);
+  }
+
+  LogLookup lookup_;
+  std::vector<bool> touched_;
+  SampleMap light_map_;
+  SampleMap view_map_;
+};
+
+// Sixteen texels of the finest level, evenly spread.
+std::vector<std::size_t> few_texels(const TexelSource& source) {
+  const auto& finest = source.levels()[0];
+  const std::size_t texels = static_cast<std::size_t>(finest.width) * finest.height;
+  const auto count = std::min<std::size_t>(texels_a_block, texels);
+  std::vector<std::size_t> few;
+  // By the golden ratio, so that neither rows nor columns repeat.
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = std::fmod((static_cast<double>(i) + 0.5) * 0.6180339887498949, 1.0);
+    few.push_back(static_cast<std::size_t>(share * static_cast<double>(texels)));
+  }
+  return few;
+}
+
+void store_block(Solver::Solution solution, const LaneVector& f,
+                 std::span<const std::size_t> texels, FittedFactors& fitted) {
+  Lanes brightest;
+  for (const Lanes& pair : f) {
+    for (int k = 0; k < lane_count; ++k) brightest[k] = std::max(brightest[k], pair[k]);
+  }
+  for (int factor = 0; factor < factor_count; ++factor)
+    store(solution.maps[factor], texels, factor, fitted);
+  for (int k = 0; k < 3 * static_cast<int>(texels.size()); ++k) {
+    fitted.scale[3 * texels[k / 3] + k % 3] *=
+        brightest[k] > 0 ? static_cast<float>(std::exp(solution.shift[k])) : 0.0F;
+  }
+}
+
+}  // namespace
+
+factor_maps::Model fit(const std::shared_ptr<const Btf>& btf, const FitOptions& options,
+                       Progress& progress) {
+  const TexelSource source(btf, options.storage.levels);
+  const int resolution = options.storage.resolution;
+  const Solver solver(btf->lights(), btf->views(), resolution);
+  const double lambda =
+      options.lambda
+          ? *options.lambda
+          : cross_validated_lambda(solver.lookup(), resolution,
+                                   logarithms(source.block(few_texels(source)), options.floor));
+  const LogSystem system(solver.lookup(), resolution, lambda);
+  FittedFactors fitted(source.size(), options.storage);
+  for (const Projection p : {Projection::light, Projection::half, Projection::view}) {
+    fitted.add(p, 1);
+  }
+  progress.start(static_cast<std::int64_t>(source.size()), "texels");
+  for (const factor_maps::Level& level : source.levels()) {
+    const std::size_t count = static_cast<std::size_t>(level.width) * level.height;
+    const std::size_t blocks = (count + texels_a_block - 1) / texels_a_block;
+    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+      std::vector<std::size_t> texels;
+      for (std::size_t t = block * texels_a_block;
+           t < std::min(count, (block + 1) * texels_a_block); ++t) {
+        texels.push_back(level.first + t);
+      }
+      const LaneVector f = source.block(texels);
+      store_block(solver.solve(system, logarithms(f, options.floor)), f, texels, fitted);
+      progress.advance(static_cast<std::int64_t>(texels.size()));
+    });
+  }
+  return assemble(source, std::move(fitted), options.storage, "hf", to_json(options, lambda),
+                  progress);
+}
+
+}  // namespace weft::hf
