@@ -4,10 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "acquisition/naive_tracer.h"
+#include "acquisition/view_tracer.h"
 #include "btf/hemisphere_sampling.h"
 #include "btf/random.h"
 #include "tests/acquisition/known_structures.h"
+#include "tests/acquisition/naive_agreement.h"
 
 using namespace weft;
 
@@ -123,40 +124,12 @@ TEST_CASE("rays meet the fibres that a wide patch of copies has in their way") {
 TEST_CASE("the fast estimator has the plain one's means on fibres") {
   Mesostructure m = rope_over_floor({0.8F, 0.5F, 0.3F});
   m.materials[1] = Bsdf::plastic({0.3F, 0.5F, 0.7F}, 1.5F, 0.4F);
-  const auto structure = std::make_shared<const TraceableStructure>(m);
-  TraceSettings settings{.width = 12, .height = 12, .spp = 128, .max_bounces = 4};
-  settings.views = 1'000'000;  // enough for a table of the floor
-  settings.texel_errors = true;
-  const std::vector<Direction> lights = {from_spherical(radians(20.0), 0.4),
-                                         from_spherical(radians(70.0), 3.0)};
-  const ViewTracer tracer(structure, lights, settings);
-  TraceSettings naive = settings;
-  naive.spp = 256;
-  naive.seed = 7;
-  double squares = 0;
-  double difference = 0;
-  double variance = 0;
-  std::size_t n = 0;
-  for (const double theta : {10.0, 75.0}) {
-    const Direction view = from_spherical(radians(theta), 1.1F);
-    const TracedView traced = tracer.trace(view, n);
-    for (std::size_t l = 0; l < lights.size(); ++l) {
-      const NaiveEstimate plain =
-          trace_pair_naively(*structure, naive, view, lights[l], hash_coordinates(n, l));
-      for (std::size_t i = 0; i < plain.values.size(); ++i, ++n) {
-        const std::size_t j = l * plain.values.size() + i;
-        const double error = traced.texel_errors[j];
-        const double both = plain.variances[i] + error * error + 1e-12;
-        const double d = traced.values[j] - plain.values[i];
-        squares += d * d / both;
-        difference += d;
-        variance += both;
-      }
-    }
-  }
-  CHECK(squares / static_cast<double>(n) < 1.3);
-  CHECK(squares / static_cast<double>(n) > 0.5);
-  CHECK(std::abs(difference) < 4 * std::sqrt(3 * variance));
+  const test::Agreement a = test::agreement(m, 256, 128);
+  INFO("mean z^2 " << a.mean_square_z << ", difference " << a.difference << " +- " << a.deviation);
+  CHECK(a.mean_square_z < 1.3);
+  CHECK(a.mean_square_z > 0.5);
+  CHECK(a.outside < 4e-3);
+  CHECK(std::abs(a.difference) < 4 * a.deviation);
 }
 
 TEST_CASE("white fibres over a white floor send back all light") {

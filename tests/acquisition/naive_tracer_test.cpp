@@ -1,71 +1,14 @@
 // The fast estimator against the plain one: the same means, pair by pair and texel by texel.
-#include "acquisition/naive_tracer.h"
-
 #include <cmath>
 #include <fstream>
-#include <memory>
 
 #include "acquisition/mesostructure.h"
-#include "btf/random.h"
+#include "tests/acquisition/naive_agreement.h"
 #include "tests/temporary_folder.h"
 
 using namespace weft;
-
-namespace {
-
-struct Agreement {
-  double mean_square_z =
-      0;                  // 1 where the errors are told rightly, less where they are conservative
-  double outside = 0;     // share of |z| > 4: chance has 6e-5
-  double difference = 0;  // of the means over all, relative
-  double deviation = 0;   // standard error of that difference, relative
-};
-
-// With a visibility table. Values of one path's channels move together, so the mean's variance is
-// taken three times.
-Agreement agreement(const Mesostructure& mesostructure, int naive_spp, int spp) {
-  const auto structure = std::make_shared<const TraceableStructure>(mesostructure);
-  TraceSettings settings{.width = 16, .height = 16, .spp = spp, .max_bounces = 4};
-  settings.views = 1'000'000;  // enough for a table, though few are traced
-  settings.texel_errors = true;
-  const std::vector<Direction> lights = {from_spherical(radians(20.0), 0.4),
-                                         from_spherical(radians(70.0), 3.0)};
-  const ViewTracer tracer(structure, lights, settings);
-  TraceSettings naive = settings;
-  naive.spp = naive_spp;
-  naive.seed = 7;
-  Agreement result;
-  double sum = 0;
-  double variance = 0;
-  std::size_t n = 0;
-  for (const double theta : {0.0, 35.0, 75.0}) {
-    const Direction view = from_spherical(radians(theta), 1.1F);
-    const TracedView traced = tracer.trace(view, n);
-    for (std::size_t l = 0; l < lights.size(); ++l) {
-      const NaiveEstimate plain =
-          trace_pair_naively(*structure, naive, view, lights[l], hash_coordinates(n, l));
-      for (std::size_t i = 0; i < plain.values.size(); ++i, ++n) {
-        const std::size_t j = l * plain.values.size() + i;
-        const double error = traced.texel_errors[j];
-        const double rounding = 1e-6 * plain.values[i];  // of the floats, where all samples are one
-        const double both = plain.variances[i] + error * error + rounding * rounding + 1e-20;
-        const double difference = traced.values[j] - plain.values[i];
-        result.mean_square_z += difference * difference / both;
-        result.outside += difference * difference > 16 * both ? 1 : 0;
-        result.difference += difference;
-        variance += both;
-        sum += plain.values[i];
-      }
-    }
-  }
-  result.mean_square_z /= static_cast<double>(n);
-  result.outside /= static_cast<double>(n);
-  result.difference /= sum;
-  result.deviation = std::sqrt(3 * variance) / sum;
-  return result;
-}
-
-}  // namespace
+using test::Agreement;
+using test::agreement;
 
 TEST_CASE("the fast estimator has the plain one's means", "[heavy]") {
   const std::string scenes = std::string(WEFT_SOURCE_DIR) + "/scenes/mesostructures/";
