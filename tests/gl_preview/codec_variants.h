@@ -35,6 +35,12 @@ inline std::vector<FittedVariant> fitted_variants(const std::shared_ptr<const we
       combinations.push_back({four, "terms=2", "bits=8", "rotate=true"});
       combinations.push_back({four, "terms=3", "bits=float", "clustered=false", "levels=false"});
     }
+    if (codec.name == "laplacian") {
+      combinations.push_back({"directions=interpolated", "filters=box2", "bits=half"});
+      combinations.push_back({"directions=interpolated", "filters=linear", "chroma_mean=cosine"});
+      combinations.push_back({"filters=linear", "levels=1", "components_cb=3", "top=mean"});
+    }
+    if (codec.name.starts_with("pca")) combinations.push_back({"bits=half", "components=5"});
     for (const auto& overrides : combinations) {
       std::string name = codec.name;
       for (const std::string& choice : overrides) name += " " + choice;
