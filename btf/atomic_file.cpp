@@ -169,10 +169,14 @@ std::string read_text(const fs::path& path) {
   return text.str();
 }
 
-std::string file_checksum(const fs::path& path) {
-  const std::string bytes = read_text(path);
+std::string checksum(std::span<const std::byte> bytes) {
   const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+std::string file_checksum(const fs::path& path) {
+  const std::string bytes = read_text(path);
+  return checksum(std::as_bytes(std::span(bytes)));
 }
 
 }  // namespace weft

@@ -1,6 +1,7 @@
 // Files that appear whole or not at all: written aside, synced, renamed.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -33,7 +34,9 @@ void remove_abandoned(const std::filesystem::path& folder);
 /// Whole contents. @throws Error bad_input, naming `path`, where it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 
-/// xxh3-128 of a file's bytes, 32 hex digits.
+/// xxh3-128, 32 hex digits.
+std::string checksum(std::span<const std::byte> bytes);
+/// The same of a file's bytes.
 std::string file_checksum(const std::filesystem::path& path);
 
 }  // namespace weft

@@ -27,6 +27,7 @@ void Progress::start(std::int64_t total, std::string unit, std::string work_unit
   total_ = total;
   unit_ = std::move(unit);
   work_unit_ = std::move(work_unit);
+  note_.clear();
   done_ = 0;
   work_ = 0;
   begin_ = last_ = std::chrono::steady_clock::now();
@@ -42,6 +43,21 @@ void Progress::advance(std::int64_t steps, std::int64_t work) {
   show();
 }
 
+void Progress::note(std::string text) {
+  const std::scoped_lock lock(mutex_);
+  note_ = std::move(text);
+}
+
+void Progress::report(const std::string& name, double value) {
+  const std::scoped_lock lock(mutex_);
+  reported_[name] = value;
+}
+
+std::map<std::string, double> Progress::reported() const {
+  const std::scoped_lock lock(mutex_);
+  return reported_;
+}
+
 void Progress::show() {
   const double seconds = std::chrono::duration<double>(last_ - begin_).count();
   const auto done = static_cast<double>(done_.load());
@@ -52,8 +68,8 @@ void Progress::show() {
   if (!work_unit_.empty() && seconds > 0) {
     work = fmt::format("  {:.3g} {}/s", static_cast<double>(work_.load()) / seconds, work_unit_);
   }
-  fmt::print(stderr, "\r\033[K{}  {:.0f} %  {:.3g} {}/s{}  {:.0f} s left", label_,
-             std::min(percent, 100.0), rate, unit_, work, std::max(left, 0.0));
+  fmt::print(stderr, "\r\033[K{}  {:.0f} %  {:.3g} {}/s{}  {:.0f} s left  {}", label_,
+             std::min(percent, 100.0), rate, unit_, work, std::max(left, 0.0), note_);
   std::fflush(stderr);
 }
 

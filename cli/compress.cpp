@@ -13,6 +13,7 @@
 #include "btf/error.h"
 #include "cli/command.h"
 #include "codecs/atomic_folder.h"
+#include "codecs/fit_checkpoint.h"
 #include "codecs/representation.h"
 #include "codecs/sample_error.h"
 
@@ -66,6 +67,12 @@ void refuse_same_folder(const Options& options) {
   }
 }
 
+// Beside the output: what a codec that takes long has done so far.
+fs::path checkpoint_folder(const std::string& output) {
+  const fs::path normal = fs::path(output).lexically_normal();
+  return (normal.has_filename() ? normal : normal.parent_path()).string() + ".partial";
+}
+
 void compress(const Options& options, Session& session, bool seed_given) {
   const Codec& codec = codec_named(options.codec);
   refuse_same_folder(options);
@@ -78,11 +85,13 @@ void compress(const Options& options, Session& session, bool seed_given) {
   const auto btf = std::make_shared<const Btf>(read_btf(options.input));
 
   Progress progress("compress " + options.codec, session.quiet);
+  progress.keep_in(checkpoint_folder(options.output));
   const auto begin = std::chrono::steady_clock::now();
   const auto fitted = codec.fit(btf, parameters, progress);
   const std::chrono::duration<double> fit_time = std::chrono::steady_clock::now() - begin;
   progress.finish();
   fitted->save(options.output);
+  remove_checkpoint(progress.kept_in());
   const SampleError error = sample_error(*btf, *fitted);
   const std::uintmax_t file_bytes = size_on_disk(options.output);
 
@@ -101,6 +110,10 @@ void compress(const Options& options, Session& session, bool seed_given) {
                           compression_ratio(*fitted)));
   session.say(fmt::format("on disk     {} bytes", file_bytes));
   session.say(fmt::format("fitted in   {:.2f} s", fit_time.count()));
+  for (const auto& [name, value] : progress.reported()) {
+    session.measured["fit"][name] = value;
+    session.say(fmt::format("{:<11} {:.6g}", name, value));
+  }
   session.say(fmt::format("RMSE        {:.6g} 1/sr at the samples ({:.2f} % of the data's RMS)",
                           error.rmse, 100 * error.relative_rmse));
 }
