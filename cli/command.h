@@ -38,4 +38,8 @@ void add_preview(CLI::App& app, Session& session);
 void add_render(CLI::App& app, Session& session);
 void add_validate(CLI::App& app, Session& session);
 
+// Each adds one subcommand of `bench`.
+void add_bench_acquire(CLI::App& bench, Session& session);
+void add_bench_codecs(CLI::App& bench, Session& session);
+
 }  // namespace weft::cli

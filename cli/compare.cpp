@@ -1,17 +1,24 @@
-// weft compare REF TEST: how far one picture is from another, in numbers and as a map.
+// weft compare REF TEST: how far one picture is from another, in numbers and as a map; or how far a
+// BTF is from a raw one, over all pairs of light and view.
 
 #include <fmt/core.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
 
+#include "btf/btf_file.h"
+#include "btf/error.h"
 #include "cli/command.h"
 #include "cli/option_checks.h"
+#include "codecs/representation.h"
+#include "codecs/sample_error.h"
 #include "images/image_file.h"
 #include "study/colour_map.h"
 #include "study/metrics.h"
+#include "study/pair_errors.h"
 
 namespace weft::cli {
 
@@ -62,7 +69,15 @@ void write_map(const Options& options, const Image& reference, const Image& test
   session.measured["map_top"] = top;
 }
 
-void compare(const Options& options, Session& session) {
+void hold_to_limit(double rmse, const Options& options, Session& session) {
+  if (!(rmse > options.max_rmse)) return;
+  session.exit_code = ExitCode::difference;
+  if (!session.quiet) {
+    fmt::print(stderr, "weft: RMSE {:.6g} is above --max-rmse {:.6g}\n", rmse, options.max_rmse);
+  }
+}
+
+void compare_pictures(const Options& options, Session& session) {
   if (!options.map.empty()) check_image_path(options.map);
   const Image reference = read_image(options.reference, Encoding::colour);
   const Image test = read_image(options.test, Encoding::colour);
@@ -70,13 +85,52 @@ void compare(const Options& options, Session& session) {
       compare_images(reference, test, options.reference, options.test);
   report(difference, channel_name(difference, reference.channels), session);
   if (!options.map.empty()) write_map(options, reference, test, session);
-  if (difference.rmse > options.max_rmse) {
-    session.exit_code = ExitCode::difference;
-    if (!session.quiet) {
-      fmt::print(stderr, "weft: RMSE {:.6g} is above --max-rmse {:.6g}\n", difference.rmse,
-                 options.max_rmse);
-    }
+  hold_to_limit(difference.rmse, options, session);
+}
+
+nlohmann::ordered_json json_of(const PairSpread& spread) {
+  return {{"average", spread.average}, {"least", spread.least}, {"greatest", spread.greatest}};
+}
+
+void report(const PairErrors& errors, Session& session) {
+  static constexpr std::array<const char*, 3> names = {"y", "cb", "cr"};
+  session.measured["pairs"] = errors.pairs;
+  session.say(
+      fmt::format("{} pairs     MSE: average, least, greatest        mean abs. difference: "
+                  "average, least, greatest",
+                  errors.pairs));
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const auto& [mse, mae] = errors.channels[c];
+    session.measured[names[c]] = {{"mse", json_of(mse)}, {"mae", json_of(mae)}};
+    session.say(fmt::format("{:10}  {:10.3e} {:10.3e} {:10.3e}    {:10.3e} {:10.3e} {:10.3e}",
+                            names[c], mse.average, mse.least, mse.greatest, mae.average, mae.least,
+                            mae.greatest));
   }
+}
+
+void compare_datasets(const Options& options, Session& session) {
+  if (!options.map.empty()) {
+    throw bad_input("--map",
+                    "draws the error of a picture, but " + options.reference + " is a dataset",
+                    "weft extract makes pictures of datasets");
+  }
+  const Btf reference = read_btf(options.reference);
+  const auto test = open_representation(options.test);
+  const PairErrors errors = pair_errors(reference, *test, options.test);
+  const SampleError error = sample_error(reference, *test);
+  session.measured["rmse"] = error.rmse;
+  session.measured["relative_rmse"] = error.relative_rmse;
+  session.say(
+      fmt::format("RMSE        {:.6g} 1/sr over RGB at the samples ({:.4g} % of the "
+                  "reference's RMS)",
+                  error.rmse, 100 * error.relative_rmse));
+  report(errors, session);
+  hold_to_limit(error.rmse, options, session);
+}
+
+void compare(const Options& options, Session& session) {
+  const bool dataset = std::filesystem::is_directory(options.reference);
+  (dataset ? compare_datasets : compare_pictures)(options, session);
 }
 
 }  // namespace
@@ -86,12 +140,17 @@ void add_compare(CLI::App& app, Session& session) {
       "compare",
       "Measure how far picture TEST is from REF, in linear values (8-bit files are decoded from "
       "sRGB): "
-      "RMSE, MAE, PSNR, SSIM, largest error. Exit code 3 where --max-rmse is exceeded");
+      "RMSE, MAE, PSNR, SSIM, largest error; or a BTF, raw or compressed, from the raw one that it "
+      "was made from, at its samples: RMSE, and of Y, Cb and Cr (linear, BT.601's weights) mean "
+      "square error and mean absolute difference of each pair of light and view, 1/sr: average, "
+      "least and greatest. Exit code 3 where --max-rmse is exceeded");
   auto options = std::make_shared<Options>();
-  command->add_option("reference", options->reference, "Picture that is taken as true")
+  command->add_option("reference", options->reference, "Picture or raw BTF that is taken as true")
       ->option_text("REF")
       ->required();
-  command->add_option("test", options->test, "Picture to judge")->option_text("TEST")->required();
+  command->add_option("test", options->test, "Picture or BTF to judge")
+      ->option_text("TEST")
+      ->required();
   command
       ->add_option("--map", options->map,
                    "Write the error of each pixel (mean of |TEST - REF| over R, G, B) in colours, "

@@ -251,3 +251,24 @@ TEST_CASE("bench refuses what it cannot measure, before it measures anything") {
   mistakes.refused({"bench", "acquire", "--scenes", "nothing"}, {"nothing", "folder"});
   mistakes.refused({"bench", "acquire", "--scenes", "small.btf"}, {"checker_lambert.toml"});
 }
+
+TEST_CASE("bench codecs refuses what it cannot measure, before it measures anything") {
+  const Mistakes mistakes;
+  const auto refused = [&](const std::vector<std::string>& more,
+                           const std::vector<std::string>& fragments) {
+    std::vector<std::string> arguments = {"bench", "codecs"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    mistakes.refused(arguments, fragments);
+  };
+  refused({"--codec", "cfm"}, {"'cfm'", "'cmf'", "laplacian"});
+  refused({"--codec", "cmf", "--codec", "cmf"}, {"--codec", "'cmf' twice"});
+  refused({"--data", "nothing.btf"}, {"nothing.btf"});
+  refused({"--data", "fitted.cmf"}, {"fitted.cmf"});
+  refused({"--data", "small.btf", "--variant-data", "nothing.btf"}, {"nothing.btf"});
+  refused({"--texels", "0"}, {"--texels", "'0'", "from 1 to"});
+  refused({"--spp", "0"}, {"--spp", "'0'", "from 1 to"});
+  refused({"--directions", "ubo82"}, {"ubo82", "ubo81"});
+  refused({"--data", "small.btf", "--variant-directions", "regular:0x8"}, {"regular:0x8"});
+  refused({"--mesostructure", "unknown.toml"}, {"unknown.toml:2", "hight"});
+  refused({"--scenes", "nothing"}, {"nothing", "folder"});
+}

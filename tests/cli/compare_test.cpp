@@ -8,6 +8,7 @@
 
 #include "images/image_file.h"
 #include "tests/cli/program.h"
+#include "tests/cli/small_dataset.h"
 #include "tests/temporary_folder.h"
 
 namespace {
@@ -92,4 +93,55 @@ TEST_CASE("compare refuses what it cannot compare, with exit code 2 and the file
   }
   CHECK(compare({p.reference}).exit_code == 2);
   CHECK(compare({"--max-rmse", "-1", p.reference, p.test}).exit_code == 2);
+}
+
+TEST_CASE("compare tells the error of a BTF over the pairs of light and view") {
+  const TemporaryFolder temporary;
+  const std::string raw = (temporary.path / "small.btf").string();
+  const std::string coded = (temporary.path / "small.cmf").string();
+  write_small_dataset(raw);
+  REQUIRE(run_weft({"compress", raw, "--codec", "cmf", "-o", coded, "--quiet"}, temporary.path)
+              .exit_code == 0);
+  const Outcome equal = compare({raw, raw, "--json", "--max-rmse", "1e-6"});
+  CHECK(equal.exit_code == 0);
+  CHECK(nlohmann::json::parse(equal.out)["pairs"] == 49);
+
+  const Outcome outcome = compare({raw, coded, "--json"});
+  REQUIRE(outcome.exit_code == 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["relative_rmse"].get<double>() < 0.05);
+  for (const char* channel : {"y", "cb", "cr"}) {
+    for (const char* measure : {"mse", "mae"}) {
+      const auto& spread = json[channel][measure];
+      CHECK(spread["least"].get<double>() <= spread["average"].get<double>());
+      CHECK(spread["average"].get<double>() <= spread["greatest"].get<double>());
+    }
+  }
+  // The data are grey, and so is what comes of them: all of the error is in Y.
+  const double mse = json["y"]["mse"]["average"];
+  CHECK(json["rmse"].get<double>() == Approx(std::sqrt(mse)).epsilon(1e-3));
+
+  CHECK_THAT(compare({raw, coded}).out, Contains("49 pairs") && Contains("cb"));
+  CHECK(compare({raw, coded, "--max-rmse", "1e-12"}).exit_code == 3);
+}
+
+TEST_CASE("compare refuses datasets that it cannot compare, in one sentence") {
+  const Pictures p;
+  const std::string raw = (p.folder / "small.btf").string();
+  const std::string coded = (p.folder / "small.pca").string();
+  write_small_dataset(raw);
+  REQUIRE(
+      run_weft({"compress", raw, "--codec", "pca", "-o", coded, "--quiet"}, p.folder).exit_code ==
+      0);
+  const auto refused = [](const std::vector<std::string>& arguments, const std::string& fragment) {
+    const Outcome outcome = compare(arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains(fragment));
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  };
+  refused({raw, p.test}, "test.exr");
+  refused({p.test, raw}, "small.btf");
+  refused({coded, raw}, "small.pca");
+  refused({raw, "missing.btf"}, "missing.btf");
+  refused({raw, coded, "--map", (p.folder / "map.png").string()}, "--map");
 }

@@ -1,0 +1,110 @@
+#include "study/codec_bars.h"
+
+#include <array>
+
+namespace weft {
+
+std::span<const CodecVariant> factor_variants() {
+  static const std::array<CodecVariant, 13> variants{{
+      {"cmf", "cmf", {}},
+      {"cmf float", "cmf", {"bits=float"}},
+      {"cmf unclustered", "cmf", {"clustered=false"}},
+      {"cmf unclustered float", "cmf", {"clustered=false", "bits=float"}},
+      {"hf", "hf", {}},
+      {"hf unclustered", "hf", {"clustered=false"}},
+      {"hf unclustered float", "hf", {"clustered=false", "bits=float"}},
+      {"hf lambda 0.1", "hf", {"clustered=false", "lambda=0.1"}},
+      {"hf lambda 0.1 float", "hf", {"clustered=false", "bits=float", "lambda=0.1"}},
+      {"hf lambda 0.01", "hf", {"clustered=false", "lambda=0.01"}},
+      {"hf lambda 0.01 float", "hf", {"clustered=false", "bits=float", "lambda=0.01"}},
+      {"hf lambda auto", "hf", {"clustered=false", "lambda=auto"}},
+      {"hf lambda auto float", "hf", {"clustered=false", "bits=float", "lambda=auto"}},
+  }};
+  return variants;
+}
+
+namespace {
+
+/// A number of one bench against a limit.
+struct Limit {
+  const char* name;  ///< of the codec or variant
+  const char* what;
+  const char* unit;
+  double (*value)(const CodecBench&);
+  double limit;
+};
+
+/// By how much the error of one variant is above that of another.
+struct Growth {
+  const char* name;
+  const char* than;
+  const char* what;
+  double limit;
+};
+
+double fit_seconds(const CodecBench& bench) {
+  return bench.fit_seconds;
+}
+double decode_ns(const CodecBench& bench) {
+  return bench.decode.single;
+}
+
+constexpr std::array<Limit, 4> codec_limits{{
+    {"laplacian", "laplacian: fit", "s", fit_seconds, 30},
+    {"raw", "raw: decode", "ns", decode_ns, 150},
+    {"cmf", "cmf: decode", "ns", decode_ns, 60},
+    {"laplacian", "laplacian: decode", "ns", decode_ns, 150},
+}};
+constexpr std::array<Limit, 2> variant_limits{{
+    {"cmf", "cmf: fit with clustering, dense directions", "s", fit_seconds, 20},
+    {"hf", "hf: fit with clustering, dense directions", "s", fit_seconds, 60},
+}};
+constexpr std::array<Growth, 3> growths{{
+    {"cmf", "cmf float", "cmf: RMSE of 8 bits above floats, clustered", 5},
+    {"cmf unclustered", "cmf unclustered float", "cmf: RMSE of 8 bits above floats, unclustered",
+     5},
+    {"cmf", "cmf unclustered", "cmf: RMSE of 256 clusters a factor above none", 12},
+}};
+constexpr double least_gain_of_batches = 2;
+constexpr double most_memory = 3;
+
+void add_limits(std::span<const Limit> limits, const CodecBenches& benches,
+                std::vector<Bar>& bars) {
+  for (const Limit& limit : limits) {
+    const auto found = benches.find(limit.name);
+    if (found == benches.end()) continue;
+    bars.push_back({limit.what, limit.unit, limit.value(found->second), limit.limit});
+  }
+}
+
+void add_memory(const CodecBenches& benches, const std::string& dataset, std::vector<Bar>& bars) {
+  for (const auto& [name, bench] : benches) {
+    if (!bench.fit_memory) continue;
+    bars.push_back({name + ": memory of the fit over the raw data" + dataset, "times",
+                    *bench.fit_memory, most_memory});
+  }
+}
+
+}  // namespace
+
+std::vector<Bar> codec_bars(const CodecBenches& codecs, const CodecBenches& variants) {
+  std::vector<Bar> bars;
+  add_limits(codec_limits, codecs, bars);
+  for (const auto& [name, bench] : codecs) {
+    bars.push_back({name + ": decode one by one over batched", "times",
+                    bench.decode.single / bench.decode.batched, least_gain_of_batches, true});
+  }
+  add_limits(variant_limits, variants, bars);
+  for (const Growth& growth : growths) {
+    const auto more = variants.find(growth.name);
+    const auto less = variants.find(growth.than);
+    if (more == variants.end() || less == variants.end() || !(less->second.rmse > 0)) continue;
+    bars.push_back(
+        {growth.what, "%", 100 * (more->second.rmse / less->second.rmse - 1), growth.limit});
+  }
+  add_memory(codecs, "", bars);
+  add_memory(variants, ", dense directions", bars);
+  return bars;
+}
+
+}  // namespace weft
