@@ -3,22 +3,21 @@
 # docs/results/codecs.md, docs/results/papers.md and the pictures in docs/images/papers/.
 # Usage: docs/make_codec_results.sh [FOLDER]           measures all. Datasets and numbers go to FOLDER (default: codec_results);
 #                                                      datasets that are there are kept, numbers are measured again
+#        docs/make_codec_results.sh --continue [FOLDER]   the same, after an interruption: numbers that are there are kept
 #        docs/make_codec_results.sh --write [FOLDER]   only writes the pages from the numbers in FOLDER
 # SPP=64 (environment): eye paths a view and texel.      Needs jq, awk and oiiotool (Debian: jq, openimageio-tools).
 set -euo pipefail
 
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 weft=$docs/../weft
-measure=true
-if [[ ${1-} == --write ]]; then
-  measure=false
-  shift
-fi
+mode=measure
+case ${1-} in --continue | --write) mode=${1#--}; shift ;; esac
 work=${1:-codec_results}
 spp=${SPP:-64}
 structures=(checker rings tissue)
 components=(1 2 4 6 8 10 12 16)
 lambdas=(0.01 0.1 1 10 auto)
+paper_lambdas=(0.1 1 10)
 lights=(0,0 30,0 60,0)
 # The codecs' own ways, where they depart from the papers.
 lod_paper=(top=mean prediction=open)
@@ -37,18 +36,20 @@ acquire() {
 fit() {
   local key=$1 data=$work/data/$2.btf codec=$3 set=() setting
   shift 3
+  [[ ! -f $work/json/$key.json ]] || return 0
   say "fit $key"
   for setting in "$@"; do set+=(--set "$setting"); done
   "$weft" compress "$data" --codec "$codec" -o "$work/fits/$key" --json "${set[@]}" >"$work/compressed.json"
   "$weft" compare "$data" "$work/fits/$key" --json >"$work/compared.json"
   jq -s --arg parameters "$*" '.[0] * .[1] + {parameters: $parameters}' "$work/compressed.json" "$work/compared.json" \
-    >"$work/json/$key.json"
+    >"$work/measured.json"
+  mv "$work/measured.json" "$work/json/$key.json"
 }
 
 # The same, and only the numbers are kept.
 numbers() {
   fit "$@"
-  rm -r "$work/fits/$1"
+  rm -rf "$work/fits/$1"
 }
 
 measure_datasets() {
@@ -78,10 +79,13 @@ measure_factorisations() {
     fit "figure3_cmf_paper_$bits" checker cmf clustered=false "bits=$bits" "${cmf_paper[@]}"
     numbers "figure3_cmf_$bits" checker cmf clustered=false "bits=$bits"
     for lambda in "${lambdas[@]}"; do
+      numbers "figure3_hf_refit_${lambda}_$bits" checker hf clustered=false "bits=$bits" levels=false "lambda=$lambda"
+    done
+    # At smaller lambda the scale leaves the range of floats where it is not solved again.
+    for lambda in "${paper_lambdas[@]}"; do
       fit "figure3_hf_${lambda}_$bits" checker hf clustered=false "bits=$bits" levels=false refit_scale=false \
         "lambda=$lambda"
-      [[ $lambda == 1 ]] || rm -r "$work/fits/figure3_hf_${lambda}_$bits"
-      numbers "figure3_hf_refit_${lambda}_$bits" checker hf clustered=false "bits=$bits" levels=false "lambda=$lambda"
+      [[ $lambda == 1 ]] || rm -rf "$work/fits/figure3_hf_${lambda}_$bits"
     done
   done
 }
@@ -120,13 +124,19 @@ measure_sizes() {
   done
 }
 
-if $measure; then
-  mkdir -p "$work/data" "$work/fits" "$work/json" "$docs/images/papers"
-  rm -f "$work"/json/*.json
-  measure_datasets
+measure_bench() {
+  [[ ! -f $work/bench.json ]] || return 0
   say "bench codecs"
   "$weft" bench codecs --data "$work/data/tissue.btf" --variant-data "$work/data/tissue_16x8.btf" --json \
-    >"$work/bench.json"
+    >"$work/measured.json"
+  mv "$work/measured.json" "$work/bench.json"
+}
+
+if [[ $mode != write ]]; then
+  mkdir -p "$work/data" "$work/fits" "$work/json" "$docs/images/papers"
+  [[ $mode == continue ]] || rm -f "$work/bench.json" "$work"/json/*.json
+  measure_datasets
+  measure_bench
   measure_laplacian
   measure_factorisations
   draw_factorisations
@@ -141,6 +151,7 @@ jq -r --arg machine "$machine" --arg spp "$spp" -f "$docs/codec_results.jq" "$wo
   >"$docs/results/codecs.md"
 jq -r --arg machine "$machine" --arg spp "$spp" --argjson components "$(jq -cn '$ARGS.positional' --args "${components[@]}")" \
   --argjson lambdas "$(jq -cn '$ARGS.positional' --args "${lambdas[@]}")" \
+  --argjson paper_lambdas "$(jq -cn '$ARGS.positional' --args "${paper_lambdas[@]}")" \
   -f "$docs/paper_results.jq" "$work/papers.json" >"$docs/results/papers.md"
 for name in "${structures[@]}"; do
   for count in "${components[@]}"; do

@@ -81,7 +81,6 @@ TEST_CASE("Decoding is timed a query, one by one and batched") {
   const auto queries = weft::decode_queries();
   const auto times = weft::decode_times(Slow(), std::span(queries).first(4));
   CHECK(times.single >= 100e3);
-  CHECK(times.single < 1e6);
   CHECK(times.batched >= 25e3);  // one wait for all four
   CHECK(times.batched < times.single / 2);
 }
