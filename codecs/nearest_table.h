@@ -10,6 +10,7 @@
 
 #include "btf/hemisphere_sampling.h"
 #include "codecs/gl_program.h"
+#include "codecs/stencil_batch.h"
 
 namespace weft {
 
@@ -22,6 +23,18 @@ class NearestTable {
     const float scale = 1 / (1 + direction.z);
     return table_[static_cast<std::size_t>(place(direction.y * scale)) * size_ +
                   place(direction.x * scale)];
+  }
+
+  /// Of sixteen.
+  Lanes<std::int32_t> operator()(const DirectionLanes& directions) const {
+    alignas(64) Lanes<std::int32_t> cell;
+    for (std::size_t i = 0; i < batch_lanes; ++i) {
+      const float scale = 1 / (1 + directions.z[i]);
+      cell[i] = place(directions.y[i] * scale) * size_ + place(directions.x[i] * scale);
+    }
+    Lanes<std::int32_t> nearest;
+    for (std::size_t i = 0; i < batch_lanes; ++i) nearest[i] = table_[cell[i]];
+    return nearest;
   }
 
   /// `int PREFIX_nearest(vec3 direction)`, with its table, a texture buffer.

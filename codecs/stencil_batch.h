@@ -1,5 +1,8 @@
-// HemisphereSampling::locate for sixteen directions at once, for batched decoding.
+// Where sixteen queries stand, found side by side for batched decoding: their four texels, and
+// their three views and three lights.
 #pragma once
+
+#include <oneapi/tbb/cache_aligned_allocator.h>
 
 #include <algorithm>
 #include <array>
@@ -9,66 +12,126 @@
 
 #include "btf/appearance.h"
 #include "btf/hemisphere_sampling.h"
+#include "btf/raw_appearance.h"
 
 namespace weft {
 
-constexpr int batch_lanes = 16;
+constexpr std::size_t batch_lanes = 16;
 
-/// Three neighbours of sixteen directions and their weights, [neighbour][lane].
-struct StencilBatch {
-  alignas(64) std::array<std::array<std::int32_t, batch_lanes>, 3> index;
-  alignas(64) std::array<std::array<float, batch_lanes>, 3> weight;
+/// One value of each of the sixteen.
+template <typename Value>
+using Lanes = std::array<Value, batch_lanes>;
 
-  Stencil lane(std::size_t i) const {
-    Stencil stencil;
-    for (std::size_t k = 0; k < 3; ++k) {
-      stencil.index[k] = static_cast<std::uint16_t>(index[k][i]);
-      stencil.weight[k] = weight[k][i];
-    }
-    return stencil;
-  }
+/// Rows of numbers that begin at the beginning of a cache line.
+using AlignedFloats = std::vector<float, oneapi::tbb::cache_aligned_allocator<float>>;
+
+struct DirectionLanes {
+  alignas(64) Lanes<float> x;
+  alignas(64) Lanes<float> y;
+  alignas(64) Lanes<float> z;
 };
 
-/// Where the triangle that the grid names holds the direction, the weights are affine functions of
-/// its parabolic image, looked up side by side; the rest, a walk or beyond the hull, is asked one
-/// by one. The same stencils as `locate`'s but for rounding.
+struct QueryBatch {
+  alignas(64) Lanes<float> u;
+  alignas(64) Lanes<float> v;
+  alignas(64) Lanes<float> lod;
+  DirectionLanes light;
+  DirectionLanes view;
+  Lanes<bool> is_seen;  ///< light and view are above the horizon; where not, they are the normal
+};
+
+/// @param queries  one to sixteen; the last one fills the lanes beyond.
+QueryBatch query_batch(std::span<const AppearanceQuery> queries);
+
+/// The twin of `AxisStencil`.
+struct AxisBatch {
+  alignas(64) Lanes<std::int32_t> low;
+  alignas(64) Lanes<std::int32_t> high;
+  alignas(64) Lanes<float> blend;
+};
+/// Of `size` columns, or rows.
+AxisBatch column_batch(const Lanes<float>& u, const Lanes<std::int32_t>& size);
+AxisBatch row_batch(const Lanes<float>& v, const Lanes<std::int32_t>& size);
+
+/// The twin of `TexelStencil`, [texel][lane].
+struct TexelBatch {
+  alignas(64) std::array<Lanes<std::int32_t>, 4> index;
+  alignas(64) std::array<Lanes<float>, 4> weight;
+
+  TexelStencil lane(std::size_t i) const {
+    TexelStencil texels;
+    for (std::size_t t = 0; t < 4; ++t) {
+      texels.index[t] = static_cast<std::uint32_t>(index[t][i]);
+      texels.weight[t] = weight[t][i];
+    }
+    return texels;
+  }
+};
+TexelBatch texel_batch(const AxisBatch& columns, const AxisBatch& rows,
+                       const Lanes<std::int32_t>& width);
+TexelBatch texel_batch(const QueryBatch& queries, int width, int height);
+
+/// Three neighbours of each direction and their weights; the fourth place holds index and weight 0.
+struct alignas(16) StencilLane {
+  std::array<std::int32_t, 4> index;
+  std::array<float, 4> weight;
+};
+using StencilBatch = Lanes<StencilLane>;
+
+/// The same stencils as `HemisphereSampling::locate`'s but for rounding, without its branches: the
+/// plane is cut into faces, which are the triangles, the strips beyond the hull's edges and the
+/// wedges beyond its corners. In each the weights are affine functions of the parabolic image.
 class BatchLocator {
  public:
   explicit BatchLocator(const HemisphereSampling& sampling);
 
   /// @param sampling    that it was made of.
   /// @param directions  sixteen unit vectors, z >= 0.
-  StencilBatch locate(const HemisphereSampling& sampling,
-                      const std::array<Direction, batch_lanes>& directions) const;
+  StencilBatch locate(const HemisphereSampling& sampling, const DirectionLanes& directions) const;
 
  private:
-  std::vector<std::array<float, 9>> weights_;  // a triangle: of x, of y, constant, for each corner
+  // A point is in the face where its three bounds are not negative; they, held below `most`, are
+  // the corners' weights. The fourth places hold zeros.
+  struct alignas(16) Face {
+    std::array<std::array<float, 4>, 3> bound{};  // [constant, of x, of y][corner]
+    std::array<float, 4> most{};
+    std::array<std::uint16_t, 4> corner{};
+    std::array<std::uint16_t, 4> beyond{};  // the face where that bound is negative
+  };
+  static Face triangle_face(const HemisphereSampling& sampling, std::size_t triangle);
+  void append_hull_faces(const HemisphereSampling& sampling);
+  std::uint16_t face_of(std::uint16_t start, float x, float y) const;
+
+  std::vector<Face> faces_;  // empty where directions are asked for one by one
+  std::vector<std::uint16_t> grid_;
 };
 
-/// Answers queries sixteen stencils at a time: `decode(query, views, lights)` where light and view
-/// are above the horizon, 0 elsewhere.
+/// Views times lights: index = view n_lights + light, and the product of their weights, at
+/// 4 v + l; places 4 v + 3 have weight 0.
+struct alignas(64) PairLane {
+  std::array<std::int32_t, 12> index;
+  std::array<float, 12> weight;
+  std::array<std::int32_t, 4> view;
+};
+/// @param of_light  what the weights of each light are multiplied by.
+/// @param factor    what all of a lane's are multiplied by.
+Lanes<PairLane> pair_batch(const StencilBatch& views, const StencilBatch& lights,
+                           std::span<const float> of_light, const Lanes<float>& factor);
+/// Of one query.
+PairLane pair_lane(const Stencil& views, const Stencil& lights, std::span<const float> of_light,
+                   float factor);
+
+/// Answers queries sixteen at a time: `decode(batch)` of type `Lanes<Rgb>(const QueryBatch&)`
+/// where light and view are above the horizon, 0 elsewhere.
 template <typename Decode>
-void decode_in_batches(const HemisphereSampling& views, const BatchLocator& view_locator,
-                       const HemisphereSampling& lights, const BatchLocator& light_locator,
-                       std::span<const AppearanceQuery> queries, std::span<Rgb> answers,
+void decode_in_batches(std::span<const AppearanceQuery> queries, std::span<Rgb> answers,
                        const Decode& decode) {
-  const auto is_seen = [](const AppearanceQuery& q) { return q.light.z > 0 && q.view.z > 0; };
   for (std::size_t first = 0; first < queries.size(); first += batch_lanes) {
     const std::size_t count = std::min<std::size_t>(batch_lanes, queries.size() - first);
-    std::array<Direction, batch_lanes> light;
-    std::array<Direction, batch_lanes> view;
-    for (std::size_t i = 0; i < batch_lanes; ++i) {
-      const AppearanceQuery& query = queries[first + std::min(i, count - 1)];
-      light[i] = is_seen(query) ? query.light : Direction(0, 0, 1);
-      view[i] = is_seen(query) ? query.view : Direction(0, 0, 1);
-    }
-    const StencilBatch by_view = view_locator.locate(views, view);
-    const StencilBatch by_light = light_locator.locate(lights, light);
-    for (std::size_t i = 0; i < count; ++i) {
-      const AppearanceQuery& query = queries[first + i];
-      answers[first + i] =
-          is_seen(query) ? decode(query, by_view.lane(i), by_light.lane(i)) : Rgb(0, 0, 0);
-    }
+    const QueryBatch batch = query_batch(queries.subspan(first, count));
+    const Lanes<Rgb> values = decode(batch);
+    for (std::size_t i = 0; i < count; ++i)
+      answers[first + i] = batch.is_seen[i] ? values[i] : Rgb(0, 0, 0);
   }
 }
 

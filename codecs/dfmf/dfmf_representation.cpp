@@ -22,14 +22,13 @@ DfmfRepresentation::DfmfRepresentation(Model model)
     : model_(std::move(model)),
       view_locator_(model_.head.views),
       light_locator_(model_.head.lights),
+      ones_(model_.head.lights.size(), 1.0F),
       basis_(model_.basis) {
   for (std::size_t i = 0; i < basis_.size(); ++i) basis_[i] *= model_.scale[i % model_.slots()];
 }
 
-Rgb DfmfRepresentation::decode(Texcoord uv, const Stencil& views, const Stencil& lights,
-                               float cosine) const {
+Rgb DfmfRepresentation::decode(const TexelStencil& texels, const PairLane& neighbours) const {
   const std::size_t slots = model_.slots();
-  const TexelStencil texels = bilinear_texels(uv, model_.head.width, model_.head.height);
   alignas(64) std::array<Vec4, most_slots> weights;  // one lane a texel
   for (std::size_t t = 0; t < 4; ++t) {
     const float* row = &model_.weights[texels.index[t] * slots];
@@ -41,10 +40,8 @@ Rgb DfmfRepresentation::decode(Texcoord uv, const Stencil& views, const Stencil&
   std::size_t pairs = 0;
   for (std::size_t v = 0; v < 3; ++v) {
     for (std::size_t l = 0; l < 3; ++l) {
-      const float weight = views.weight[v] * lights.weight[l];
-      if (weight == 0) continue;
-      const float* basis =
-          &basis_[(views.index[v] * model_.head.lights.size() + lights.index[l]) * slots];
+      const float weight = neighbours.weight[4 * v + l];
+      const float* basis = &basis_[neighbours.index[4 * v + l] * slots];
       std::size_t s = 0;
       for (std::size_t c = 0; c < 3; ++c) {
         Vec4 even{};
@@ -76,22 +73,28 @@ Rgb DfmfRepresentation::decode(Texcoord uv, const Stencil& views, const Stencil&
     green += w[i] * std::max(0.0F, y - green_of_u * u - green_of_v * v);
     blue += w[i] * std::max(0.0F, y + blue_of_u * u);
   }
-  return Rgb(red, green, blue) * cosine;
+  return {red, green, blue};
 }
 
 Rgb DfmfRepresentation::evaluate(Texcoord uv, Direction light, Direction view,
                                  float /*lod*/) const {
   if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
-  return decode(uv, model_.head.views.locate(view), model_.head.lights.locate(light), light.z);
+  return decode(
+      bilinear_texels(uv, model_.head.width, model_.head.height),
+      pair_lane(model_.head.views.locate(view), model_.head.lights.locate(light), ones_, light.z));
 }
 
 void DfmfRepresentation::evaluate(std::span<const AppearanceQuery> queries,
                                   std::span<Rgb> answers) const {
-  decode_in_batches(model_.head.views, view_locator_, model_.head.lights, light_locator_, queries,
-                    answers,
-                    [&](const AppearanceQuery& query, const Stencil& views, const Stencil& lights) {
-                      return decode(query.uv, views, lights, query.light.z);
-                    });
+  decode_in_batches(queries, answers, [this](const QueryBatch& batch) {
+    const TexelBatch texels = texel_batch(batch, model_.head.width, model_.head.height);
+    const Lanes<PairLane> pairs =
+        pair_batch(view_locator_.locate(model_.head.views, batch.view),
+                   light_locator_.locate(model_.head.lights, batch.light), ones_, batch.light.z);
+    Lanes<Rgb> values;
+    for (std::size_t i = 0; i < batch_lanes; ++i) values[i] = decode(texels.lane(i), pairs[i]);
+    return values;
+  });
 }
 
 std::size_t DfmfRepresentation::constant_bytes() const {

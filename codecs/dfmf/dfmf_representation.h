@@ -1,6 +1,7 @@
 // A fitted DFMF that can be evaluated, saved and given to the GPU.
 #pragma once
 
+#include "btf/raw_appearance.h"
 #include "codecs/dfmf/model.h"
 #include "codecs/representation.h"
 #include "codecs/stencil_batch.h"
@@ -28,11 +29,12 @@ class DfmfRepresentation : public Representation {
   GlProgram gl_program() const override;
 
  private:
-  Rgb decode(Texcoord uv, const Stencil& views, const Stencil& lights, float cosine) const;
+  Rgb decode(const TexelStencil& texels, const PairLane& neighbours) const;
 
   Model model_;
   BatchLocator view_locator_;
   BatchLocator light_locator_;
+  std::vector<float> ones_;   // for each light
   std::vector<float> basis_;  // [view][light][slot], times scale
 };
 

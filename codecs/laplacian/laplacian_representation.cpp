@@ -15,8 +15,7 @@ namespace {
 
 constexpr std::size_t most_slots = 96;
 
-/// Four slots side by side, and sixteen.
-using Vec4 = float __attribute__((vector_size(16)));
+// Sixteen slots side by side.
 using Vec16 = float __attribute__((vector_size(64)));
 
 template <typename Lanes>
@@ -24,6 +23,10 @@ Lanes load(const float* p) {
   Lanes v;
   __builtin_memcpy(&v, p, sizeof v);
   return v;
+}
+
+inline float sum_of(const Vec4& v) {
+  return (v[0] + v[2]) + (v[1] + v[3]);
 }
 
 // lambda of section 3.4, step 2.
@@ -41,22 +44,72 @@ Corners corners(Texcoord uv, int width, int height) {
 }
 
 // Equation 5, side by side.
-std::array<float, batch_lanes> phong_means(const Phong& phong,
-                                           const std::array<Direction, batch_lanes>& light,
-                                           const std::array<Direction, batch_lanes>& view) {
-  alignas(64) std::array<float, batch_lanes> cosine;
-  alignas(64) std::array<float, batch_lanes> light_cosine;
+Lanes<float> phong_means(const Phong& phong, const QueryBatch& batch) {
+  alignas(64) Lanes<float> mean;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
-    const Direction sum = light[i] + view[i];
-    cosine[i] = sum.z / std::sqrt(sum ^ sum);
-    light_cosine[i] = light[i].z;
-  }
-  std::array<float, batch_lanes> mean;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    const float lobe = branchless_exp(phong.alpha * branchless_log(std::max(cosine[i], 1e-30F)));
-    mean[i] = phong.ka + phong.kd * light_cosine[i] + phong.ks * lobe;
+    const float x = batch.light.x[i] + batch.view.x[i];
+    const float y = batch.light.y[i] + batch.view.y[i];
+    const float z = batch.light.z[i] + batch.view.z[i];
+    const float cosine = z / std::sqrt(x * x + y * y + z * z);
+    const float lobe = branchless_exp(phong.alpha * branchless_log(std::max(cosine, 1e-30F)));
+    mean[i] = phong.ka + phong.kd * batch.light.z[i] + phong.ks * lobe;
   }
   return mean;
+}
+
+// Texels of the levels `grid` around uv, whose parents count with the same weights.
+struct BoxBatch {
+  Lanes<std::int32_t> grid;
+  AxisBatch x;
+  AxisBatch y;
+  std::array<Lanes<float>, 4> weight;
+};
+
+BoxBatch box_batch(const Pyramid& pyramid, const QueryBatch& batch, const Lanes<std::int32_t>& grid,
+                   const Lanes<float>& share) {
+  alignas(64) Lanes<std::int32_t> width;
+  alignas(64) Lanes<std::int32_t> height;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    width[i] = pyramid.width >> grid[i];
+    height[i] = pyramid.height >> grid[i];
+  }
+  BoxBatch boxes{grid, column_batch(batch.u, width), row_batch(batch.v, height), {}};
+  boxes.weight = texel_batch(boxes.x, boxes.y, width).weight;
+  for (Lanes<float>& weight : boxes.weight) {
+    for (std::size_t i = 0; i < batch_lanes; ++i) weight[i] *= share[i];
+  }
+  return boxes;
+}
+
+// Lanes whose grid is coarser than `level` have weight 0.
+TexelBatch box_texels(const Pyramid& pyramid, const BoxBatch& boxes, int level) {
+  const int width = pyramid.width_of(level);
+  const int height = pyramid.height_of(level);
+  TexelBatch texels;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    const int between = std::max(level - boxes.grid[i], 0);
+    const int left = parent(boxes.x.low[i], between, width);
+    const int right = parent(boxes.x.high[i], between, width);
+    const int upper = width * parent(boxes.y.low[i], between, height);
+    const int lower = width * parent(boxes.y.high[i], between, height);
+    texels.index[0][i] = upper + left;
+    texels.index[1][i] = upper + right;
+    texels.index[2][i] = lower + left;
+    texels.index[3][i] = lower + right;
+    for (std::size_t t = 0; t < 4; ++t)
+      texels.weight[t][i] = level < boxes.grid[i] ? 0 : boxes.weight[t][i];
+  }
+  return texels;
+}
+
+TexelBatch linear_texels(const Pyramid& pyramid, const QueryBatch& batch,
+                         const Lanes<std::int32_t>& grid, const Lanes<float>& blend, int level) {
+  TexelBatch texels = texel_batch(batch, pyramid.width_of(level), pyramid.height_of(level));
+  for (Lanes<float>& weight : texels.weight) {
+    for (std::size_t i = 0; i < batch_lanes; ++i)  // w_k
+      weight[i] *= level < grid[i] ? 0 : level == grid[i] ? 1 - blend[i] : 1;
+  }
+  return texels;
 }
 
 }  // namespace
@@ -84,22 +137,27 @@ LaplacianRepresentation::LaplacianRepresentation(Model model)
       view_locator_(model_.head.views),
       light_locator_(model_.head.lights),
       nearest_view_(model_.head.views),
-      nearest_light_(model_.head.lights) {
+      nearest_light_(model_.head.lights),
+      inverse_cosines_(inverse_cosines(model_.head.lights)),
+      stride_(model_.quads() == 3 ? 16 : model_.slots()) {
   for (int level = 0; level < model_.levels(); ++level)
     first_row_.push_back(model_.first_weight_row(level));
-  const std::vector<float> inverse = inverse_cosines(model_.head.lights);
   const std::size_t slots = model_.slots();
   const std::size_t levels = static_cast<std::size_t>(model_.levels());
-  weights_ = model_.weights;
-  weights_.resize(weights_.size() + 4);  // where the last row's sixteen lanes end
-  eigen_.resize(model_.eigen.size() + 4);
+  for (std::size_t c = 0; c < 3; ++c) {
+    is_of_channel_[c].resize(slots);
+    std::fill_n(&is_of_channel_[c][model_.first_slot(c)], model_.components[c], 1.0F);
+  }
+  weights_.resize(model_.weights.size() / slots * stride_);
+  for (std::size_t row = 0; row * slots < model_.weights.size(); ++row)
+    std::copy_n(&model_.weights[row * slots], slots, &weights_[row * stride_]);
+  eigen_.resize(model_.eigen.size() / slots * stride_);
   for (std::size_t pair = 0; pair < model_.head.pairs(); ++pair) {
-    const float factor = model_.interpolated ? inverse[pair % inverse.size()] : 1;
     for (std::size_t level = 0; level < levels; ++level) {
       for (std::size_t slot = 0; slot < slots; ++slot) {
-        eigen_[(pair * levels + level) * slots + slot] =
+        eigen_[(pair * levels + level) * stride_ + slot] =
             model_.eigen[(level * model_.head.pairs() + pair) * slots + slot] *
-            model_.scale[level * slots + slot] * factor;
+            model_.scale[level * slots + slot];
       }
     }
   }
@@ -115,18 +173,13 @@ LaplacianRepresentation::Pairs LaplacianRepresentation::nearest_pair(const Direc
   return pairs;
 }
 
-LaplacianRepresentation::Pairs LaplacianRepresentation::weighted_pairs(const Stencil& lights,
-                                                                       const Stencil& views,
-                                                                       float cosine) const {
+LaplacianRepresentation::Pairs LaplacianRepresentation::weighted_pairs(
+    const PairLane& found) const {
   Pairs pairs;
-  pairs.index[0] = 0;  // asked for even where all weights fade to zero
-  pairs.weight[0] = 0;
   for (std::size_t v = 0; v < 3; ++v) {
-    for (std::size_t l = 0; l < 3; ++l) {
-      const float weight = views.weight[v] * lights.weight[l];
-      if (weight == 0) continue;
-      pairs.index[pairs.count] = views.index[v] * model_.head.lights.size() + lights.index[l];
-      pairs.weight[pairs.count++] = weight * cosine;
+    for (std::size_t i = 4 * v; i < 4 * v + 3; ++i) {
+      pairs.index[pairs.count] = found.index[i];
+      pairs.weight[pairs.count++] = found.weight[i];
     }
   }
   return pairs;
@@ -139,26 +192,25 @@ LaplacianRepresentation::Place LaplacianRepresentation::place_of(Texcoord uv, fl
           corners(uv, model_.pyramid.width_of(level), model_.pyramid.height_of(level))};
 }
 
-// D^T E of one level, slot by slot. The paper's twelve slots are one vector of sixteen: its last
-// four lanes hold the beginning of the next row, and nobody adds them up.
+// D^T E of one level, slot by slot. The paper's twelve slots are one vector of sixteen.
 template <std::size_t Quads>
 [[gnu::always_inline]] inline void LaplacianRepresentation::add_level(int level, const Blend& blend,
                                                                       const Pairs& pairs,
                                                                       float* sum) const {
-  using Lanes = std::conditional_t<Quads == 3, Vec16, Vec4>;
-  constexpr std::size_t step = sizeof(Lanes) / sizeof(float);
-  const std::size_t slots = 4 * (Quads > 0 ? Quads : model_.quads());
-  const std::size_t stride = model_.levels() * slots;
-  const float* weights = &weights_[first_row_[level] * slots];
-  const float* eigen = &eigen_[level * slots];
-  for (std::size_t s = 0; s < slots; s += step) {
-    Lanes d{};
+  using RowLanes = std::conditional_t<Quads == 3, Vec16, Vec4>;
+  constexpr std::size_t step = sizeof(RowLanes) / sizeof(float);
+  const std::size_t row = Quads == 3 ? 16 : stride_;
+  const std::size_t stride = model_.levels() * row;
+  const float* weights = &weights_[first_row_[level] * row];
+  const float* eigen = &eigen_[level * row];
+  for (std::size_t s = 0; s < row; s += step) {
+    RowLanes d{};
     for (std::size_t t = 0; t < 4; ++t)
-      d += load<Lanes>(weights + blend.texel[t] * slots + s) * blend.weight[t];
-    Lanes e = load<Lanes>(eigen + pairs.index[0] * stride + s) * pairs.weight[0];
+      d += load<RowLanes>(weights + blend.texel[t] * row + s) * blend.weight[t];
+    RowLanes e = load<RowLanes>(eigen + pairs.index[0] * stride + s) * pairs.weight[0];
     for (std::size_t i = 1; i < pairs.count; ++i)
-      e += load<Lanes>(eigen + pairs.index[i] * stride + s) * pairs.weight[i];
-    const Lanes total = load<Lanes>(sum + s) + d * e;
+      e += load<RowLanes>(eigen + pairs.index[i] * stride + s) * pairs.weight[i];
+    const RowLanes total = load<RowLanes>(sum + s) + d * e;
     __builtin_memcpy(sum + s, &total, sizeof total);
   }
 }
@@ -202,80 +254,135 @@ void LaplacianRepresentation::add_levels(Texcoord uv, const Place& place, const 
   }
 }
 
-// Equation 7.
-Rgb LaplacianRepresentation::decode(const AppearanceQuery& query, const Place& place,
-                                    const Pairs& pairs, float mean_y) const {
-  alignas(64) std::array<float, most_slots> sum;
-  if (model_.quads() == 3) {
-    std::fill_n(sum.begin(), 16, 0.0F);
-    add_levels<3>(query.uv, place, pairs, sum.data());
-  } else {
-    std::fill_n(sum.begin(), model_.slots(), 0.0F);
-    add_levels<0>(query.uv, place, pairs, sum.data());
+// Each channel's slots of the levels' sums, four partial sums of them.
+template <std::size_t Quads>
+[[gnu::always_inline]] inline std::array<Vec4, 3> LaplacianRepresentation::channel_sums(
+    const float* sum) const {
+  const std::size_t quads = Quads > 0 ? Quads : model_.quads();
+  std::array<Vec4, 3> channel{};
+  for (std::size_t q = 0; q < quads; ++q) {
+    for (std::size_t c = 0; c < 3; ++c)
+      channel[c] += load<Vec4>(sum + 4 * q) * load<Vec4>(&is_of_channel_[c][4 * q]);
   }
-  std::array<float, 3> channel{mean_y, model_.mean_chroma[0], model_.mean_chroma[1]};
-  if (model_.chroma == ChromaMean::cosine) {
-    channel[1] *= query.light.z;
-    channel[2] *= query.light.z;
-  }
-  Vec4 luma{};
-  for (std::size_t quad = 0; quad < model_.luma_quads(); ++quad)
-    luma += load<Vec4>(sum.data() + 4 * quad);
-  channel[0] += (luma[0] + luma[2]) + (luma[1] + luma[3]);
-  for (std::size_t c = 1; c < 3; ++c) {
-    const float* slot = sum.data() + model_.first_slot(c);
-    for (std::size_t k = 0; k < model_.components[c]; ++k) channel[c] += slot[k];
-  }
-  Rgb rgb = rgb_of_ycbcr(channel[0], channel[1], channel[2]);
-  for (int c = 0; c < 3; ++c) rgb[c] = rgb[c] < 0 ? 0 : rgb[c];  // a NaN stays one
-  return rgb;
+  return channel;
+}
+
+// Equation 7, but for its sums over the levels.
+Rgb LaplacianRepresentation::colour(float y, float cb, float cr, float mean_y,
+                                    float light_cosine) const {
+  const float share = model_.chroma == ChromaMean::cosine ? light_cosine : 1;
+  const Rgb rgb = rgb_of_ycbcr(mean_y + y, model_.mean_chroma[0] * share + cb,
+                               model_.mean_chroma[1] * share + cr);
+  const auto not_negative = [](float x) { return x < 0 ? 0 : x; };  // a NaN stays one
+  return {not_negative(rgb.x), not_negative(rgb.y), not_negative(rgb.z)};
 }
 
 Rgb LaplacianRepresentation::evaluate(Texcoord uv, Direction light, Direction view,
                                       float lod) const {
   if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
-  const Pairs pairs = model_.interpolated ? weighted_pairs(model_.head.lights.locate(light),
-                                                           model_.head.views.locate(view), light.z)
-                                          : nearest_pair(light, view);
-  return decode({uv, light, view, lod}, place_of(uv, lod), pairs, model_.mean_y(light, view));
+  const Pairs pairs =
+      model_.interpolated
+          ? weighted_pairs(pair_lane(model_.head.views.locate(view),
+                                     model_.head.lights.locate(light), inverse_cosines_, light.z))
+          : nearest_pair(light, view);
+  const Place place = place_of(uv, lod);
+  alignas(64) std::array<float, most_slots> sum;
+  std::fill_n(sum.begin(), stride_, 0.0F);
+  if (model_.quads() == 3)
+    add_levels<3>(uv, place, pairs, sum.data());
+  else
+    add_levels<0>(uv, place, pairs, sum.data());
+  const std::array<Vec4, 3> channel = channel_sums<0>(sum.data());
+  return colour(sum_of(channel[0]), sum_of(channel[1]), sum_of(channel[2]),
+                model_.mean_y(light, view), light.z);
 }
 
 void LaplacianRepresentation::evaluate(std::span<const AppearanceQuery> queries,
                                        std::span<Rgb> answers) const {
-  for (std::size_t first = 0; first < queries.size(); first += batch_lanes) {
-    const std::size_t count = std::min<std::size_t>(batch_lanes, queries.size() - first);
-    std::array<Direction, batch_lanes> light;
-    std::array<Direction, batch_lanes> view;
-    std::array<bool, batch_lanes> is_seen;
-    for (std::size_t i = 0; i < batch_lanes; ++i) {
-      const AppearanceQuery& query = queries[first + std::min(i, count - 1)];
-      is_seen[i] = query.light.z > 0 && query.view.z > 0;
-      light[i] = is_seen[i] ? query.light : Direction(0, 0, 1);
-      view[i] = is_seen[i] ? query.view : Direction(0, 0, 1);
-    }
-    const std::array<Pairs, batch_lanes> pairs = pairs_of(light, view);
-    const std::array<float, batch_lanes> mean = phong_means(model_.mean_y, light, view);
-    for (std::size_t i = 0; i < count; ++i) {
-      const AppearanceQuery& query = queries[first + i];
-      answers[first + i] = is_seen[i]
-                               ? decode(query, place_of(query.uv, query.lod), pairs[i], mean[i])
-                               : Rgb(0, 0, 0);
-    }
-  }
+  decode_in_batches(queries, answers, [this](const QueryBatch& batch) {
+    return model_.quads() == 3 ? decode<3>(batch) : decode<0>(batch);
+  });
 }
 
-std::array<LaplacianRepresentation::Pairs, batch_lanes> LaplacianRepresentation::pairs_of(
-    const std::array<Direction, batch_lanes>& light,
-    const std::array<Direction, batch_lanes>& view) const {
-  std::array<Pairs, batch_lanes> pairs;
-  if (!model_.interpolated) {
-    for (std::size_t i = 0; i < batch_lanes; ++i) pairs[i] = nearest_pair(light[i], view[i]);
-    return pairs;
+// The levels one after the other, each of all lanes.
+template <std::size_t Quads>
+Lanes<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
+  const Lanes<Pairs> pairs = pairs_of(batch);
+  const Lanes<float> mean = phong_means(model_.mean_y, batch);
+  alignas(64) std::array<float, batch_lanes*(Quads == 3 ? 16 : most_slots)> sums;
+  std::fill_n(sums.begin(), batch_lanes * stride_, 0.0F);
+  const Pyramid& pyramid = model_.pyramid;
+  Lanes<std::int32_t> grid;
+  Lanes<float> blend;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    const float lambda = level_of(batch.lod[i], pyramid.top);
+    grid[i] = static_cast<std::int32_t>(lambda);
+    blend[i] = lambda - static_cast<float>(grid[i]);
   }
-  const StencilBatch views = view_locator_.locate(model_.head.views, view);
-  const StencilBatch lights = light_locator_.locate(model_.head.lights, light);
-  for (std::size_t i = 0; i < batch_lanes; ++i)
-    pairs[i] = weighted_pairs(lights.lane(i), views.lane(i), light[i].z);
+  const auto add = [&](int level, const TexelBatch& texels) {
+    for (std::size_t i = 0; i < batch_lanes; ++i) {
+      Blend rows;
+      for (std::size_t t = 0; t < 4; ++t) {
+        rows.texel[t] = static_cast<std::uint32_t>(texels.index[t][i]);
+        rows.weight[t] = texels.weight[t][i];
+      }
+      add_level<Quads>(level, rows, pairs[i], &sums[i * stride_]);
+    }
+  };
+  if (pyramid.filters == Filters::linear) {
+    for (int level = std::ranges::min(grid); level <= pyramid.top; ++level)
+      add(level, linear_texels(pyramid, batch, grid, blend, level));
+  } else {
+    const auto add_boxes = [&](const BoxBatch& boxes) {
+      for (int level = std::ranges::min(boxes.grid); level <= pyramid.top; ++level)
+        add(level, box_texels(pyramid, boxes, level));
+    };
+    alignas(64) Lanes<float> rest;
+    for (std::size_t i = 0; i < batch_lanes; ++i) rest[i] = 1 - blend[i];
+    add_boxes(box_batch(pyramid, batch, grid, rest));
+    if (std::ranges::max(blend) > 0) {
+      for (std::int32_t& g : grid) g = std::min(g + 1, pyramid.top);
+      add_boxes(box_batch(pyramid, batch, grid, blend));
+    }
+  }
+  alignas(64) std::array<Lanes<Vec4>, 3> channels;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    const std::array<Vec4, 3> channel = channel_sums<Quads>(&sums[i * stride_]);
+    for (std::size_t c = 0; c < 3; ++c) channels[c][i] = channel[c];
+  }
+  Lanes<Rgb> values;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    values[i] = colour(sum_of(channels[0][i]), sum_of(channels[1][i]), sum_of(channels[2][i]),
+                       mean[i], batch.light.z[i]);
+  }
+  return values;
+}
+
+// Asks for their rows of the eigen map, too, which are used much later.
+Lanes<LaplacianRepresentation::Pairs> LaplacianRepresentation::pairs_of(
+    const QueryBatch& batch) const {
+  Lanes<Pairs> pairs;
+  if (model_.interpolated) {
+    const Lanes<PairLane> found = pair_batch(view_locator_.locate(model_.head.views, batch.view),
+                                             light_locator_.locate(model_.head.lights, batch.light),
+                                             inverse_cosines_, batch.light.z);
+    for (std::size_t i = 0; i < batch_lanes; ++i) pairs[i] = weighted_pairs(found[i]);
+  } else {
+    const Lanes<std::int32_t> views = nearest_view_(batch.view);
+    const Lanes<std::int32_t> lights = nearest_light_(batch.light);
+    for (std::size_t i = 0; i < batch_lanes; ++i) {
+      pairs[i].count = 1;
+      pairs[i].index[0] = views[i] * model_.head.lights.size() + lights[i];
+      pairs[i].weight[0] = 1;
+    }
+  }
+  const std::size_t stride = model_.levels() * stride_;
+  for (const Pairs& of_lane : pairs) {
+    for (std::size_t k = 0; k < of_lane.count; ++k) {
+      for (std::size_t s = 0; s < stride; s += 16)
+        __builtin_prefetch(&eigen_[of_lane.index[k] * stride + s]);
+    }
+  }
   return pairs;
 }
 

@@ -10,6 +10,9 @@
 
 namespace weft::laplacian {
 
+/// Four slots side by side.
+using Vec4 = float __attribute__((vector_size(16)));
+
 /// Columns and rows of the four texels around uv.
 struct Corners {
   std::array<int, 2> x;
@@ -46,9 +49,8 @@ class LaplacianRepresentation : public Representation {
   struct Blend;  // which rows of a level's weights
   struct Place;  // level and texels
   Pairs nearest_pair(const Direction& light, const Direction& view) const;
-  Pairs weighted_pairs(const Stencil& lights, const Stencil& views, float cosine) const;
-  std::array<Pairs, batch_lanes> pairs_of(const std::array<Direction, batch_lanes>& light,
-                                          const std::array<Direction, batch_lanes>& view) const;
+  Pairs weighted_pairs(const PairLane& found) const;
+  Lanes<Pairs> pairs_of(const QueryBatch& batch) const;
   Place place_of(Texcoord uv, float lod) const;
   template <std::size_t Quads>
   void add_level(int level, const Blend& blend, const Pairs& pairs, float* sum) const;
@@ -56,18 +58,23 @@ class LaplacianRepresentation : public Representation {
   void add_boxes(const Corners& c, int grid, float weight, const Pairs& pairs, float* sum) const;
   template <std::size_t Quads>
   void add_levels(Texcoord uv, const Place& place, const Pairs& pairs, float* sum) const;
-  Rgb decode(const AppearanceQuery& query, const Place& place, const Pairs& pairs,
-             float mean_y) const;
+  template <std::size_t Quads>
+  Lanes<Rgb> decode(const QueryBatch& batch) const;
+  template <std::size_t Quads>
+  std::array<Vec4, 3> channel_sums(const float* sum) const;
+  Rgb colour(float y, float cb, float cr, float mean_y, float light_cosine) const;
 
   Model model_;
   BatchLocator view_locator_;
   BatchLocator light_locator_;
   NearestTable nearest_view_;
   NearestTable nearest_light_;
-  std::vector<std::size_t> first_row_;  // of each level, in the model's weights
-  std::vector<float> weights_;          // the model's, four more behind them
-  std::vector<float> eigen_;            // [view][light][level][slot], times scale; interpolated
-                                        // ones over cos(theta_light)
+  std::vector<float> inverse_cosines_;          // of the lights
+  std::array<AlignedFloats, 3> is_of_channel_;  // 1 in the slots of Y, of Cb, of Cr
+  std::size_t stride_;                  // of the rows below, slots of which the last may be unused
+  std::vector<std::size_t> first_row_;  // of each level, in the weights
+  AlignedFloats weights_;               // [level][texel][stride_]
+  AlignedFloats eigen_;                 // [view][light][level][stride_], times scale
 };
 
 }  // namespace weft::laplacian

@@ -36,21 +36,11 @@ std::size_t whole_lanes(std::size_t n) {
 
 }  // namespace
 
-// The pairs that a query asks for, with their weights; those of group g, before end[g + 1], share
-// one set of texel weights.
-struct PcaRepresentation::Neighbours {
-  std::size_t count = 0;
-  std::size_t groups = 0;
-  std::array<std::size_t, 9> pair;
-  std::array<float, 9> weight;
-  std::array<std::size_t, 4> end{};
-  std::array<std::size_t, 3> set;
-};
-
 PcaRepresentation::PcaRepresentation(Model model)
     : model_(std::move(model)),
       view_locator_(model_.head.views),
       light_locator_(model_.head.lights),
+      inverse_cosines_(inverse_cosines(model_.head.lights)),
       lanes_(whole_lanes(model_.components)) {
   const std::size_t padded = model_.padded();
   const std::size_t rows = model_.weights.size() / padded;
@@ -58,73 +48,52 @@ PcaRepresentation::PcaRepresentation(Model model)
   for (std::size_t row = 0; row < rows; ++row)
     std::copy_n(&model_.weights[row * padded], padded, &weights_[row * lanes_]);
 
-  const std::vector<float> inverse = inverse_cosines(model_.head.lights);
   const std::size_t n_lights = model_.head.lights.size();
   basis_.resize(3 * model_.head.pairs() * lanes_);
   mean_.resize(4 * model_.head.pairs());
   for (std::size_t pair = 0; pair < model_.head.pairs(); ++pair) {
     const float* scale = model_.scale.data() + (model_.sets == 1 ? 0 : pair / n_lights) * padded;
-    const float over_cosine = inverse[pair % n_lights];
     for (std::size_t c = 0; c < 3; ++c) {
-      mean_[4 * pair + c] = model_.mean[4 * pair + c] * model_.mean_scale * over_cosine;
-      for (std::size_t k = 0; k < padded; ++k) {
-        basis_[(3 * pair + c) * lanes_ + k] =
-            model_.basis[(3 * pair + c) * padded + k] * scale[k] * over_cosine;
-      }
+      mean_[4 * pair + c] = model_.mean[4 * pair + c] * model_.mean_scale;
+      for (std::size_t k = 0; k < padded; ++k)
+        basis_[(3 * pair + c) * lanes_ + k] = model_.basis[(3 * pair + c) * padded + k] * scale[k];
     }
   }
 }
 
-PcaRepresentation::Neighbours PcaRepresentation::neighbours(const Stencil& views,
-                                                            const Stencil& lights,
-                                                            float cosine) const {
-  Neighbours n;
-  for (std::size_t v = 0; v < 3; ++v) {
-    if (views.weight[v] == 0) continue;
-    for (std::size_t l = 0; l < 3; ++l) {
-      if (lights.weight[l] == 0) continue;
-      n.pair[n.count] = views.index[v] * model_.head.lights.size() + lights.index[l];
-      n.weight[n.count++] = views.weight[v] * lights.weight[l] * cosine;
-    }
-    if (model_.sets > 1 || n.groups == 0) n.set[n.groups++] = model_.sets > 1 ? views.index[v] : 0;
-    n.end[n.groups] = n.count;
-  }
-  return n;
-}
-
-template <typename Lanes>
-std::array<float, 3> PcaRepresentation::component_sums(const TexelStencil& texels,
-                                                       const Neighbours& n) const {
-  constexpr std::size_t step = sizeof(Lanes) / sizeof(float);
-  std::array<Lanes, 3> sum{};
-  for (std::size_t g = 0; g < n.groups; ++g) {
-    const float* set = weights_.data() + n.set[g] * model_.head.texels() * lanes_;
-    for (std::size_t k = 0; k < lanes_; k += step) {
-      Lanes weight{};
+template <typename Row>
+Rgb PcaRepresentation::decode(const TexelStencil& texels, const PairLane& pairs) const {
+  constexpr std::size_t step = sizeof(Row) / sizeof(float);
+  const std::size_t lanes = step == 8 ? 8 : lanes_;
+  const std::size_t groups = model_.sets > 1 ? 3 : 1;  // of pairs, with one set of weights each
+  const std::size_t views_a_group = 3 / groups;
+  std::array<Row, 3> sum{};
+  for (std::size_t g = 0; g < groups; ++g) {
+    const std::size_t set = groups > 1 ? pairs.view[g] : 0;
+    const float* rows = weights_.data() + set * model_.head.texels() * lanes;
+    for (std::size_t k = 0; k < lanes; k += step) {
+      Row weight{};
       for (std::size_t t = 0; t < 4; ++t)
-        weight += load<Lanes>(set + texels.index[t] * lanes_ + k) * texels.weight[t];
-      std::array<Lanes, 3> value{};
-      for (std::size_t i = n.end[g]; i < n.end[g + 1]; ++i) {
-        const float* basis = basis_.data() + 3 * n.pair[i] * lanes_ + k;
-        for (std::size_t c = 0; c < 3; ++c)
-          value[c] += load<Lanes>(basis + c * lanes_) * n.weight[i];
+        weight += load<Row>(rows + texels.index[t] * lanes + k) * texels.weight[t];
+      std::array<Row, 3> value{};
+      for (std::size_t v = g * views_a_group; v < (g + 1) * views_a_group; ++v) {
+        for (std::size_t i = 4 * v; i < 4 * v + 3; ++i) {
+          const float* basis = basis_.data() + 3 * pairs.index[i] * lanes + k;
+          for (std::size_t c = 0; c < 3; ++c)
+            value[c] += load<Row>(basis + c * lanes) * pairs.weight[i];
+        }
       }
       for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * value[c];
     }
   }
-  return {sum_of(sum[0]), sum_of(sum[1]), sum_of(sum[2])};
-}
-
-Rgb PcaRepresentation::decode(const TexelStencil& texels, const Stencil& views,
-                              const Stencil& lights, float cosine) const {
-  const Neighbours n = neighbours(views, lights, cosine);
   Vec4 mean{};
-  for (std::size_t i = 0; i < n.count; ++i) mean += load<Vec4>(&mean_[4 * n.pair[i]]) * n.weight[i];
-  const std::array<float, 3> sum =
-      lanes_ == 8 ? component_sums<Vec8>(texels, n) : component_sums<Vec16>(texels, n);
+  for (std::size_t v = 0; v < 3; ++v) {
+    for (std::size_t i = 4 * v; i < 4 * v + 3; ++i)
+      mean += load<Vec4>(&mean_[4 * pairs.index[i]]) * pairs.weight[i];
+  }
   Rgb result;
   for (int c = 0; c < 3; ++c) {
-    const float value = mean[c] + sum[c];
+    const float value = mean[c] + sum_of(sum[c]);
     result[c] = value < 0 ? 0 : value;  // a NaN stays one
   }
   return result;
@@ -132,18 +101,29 @@ Rgb PcaRepresentation::decode(const TexelStencil& texels, const Stencil& views,
 
 Rgb PcaRepresentation::evaluate(Texcoord uv, Direction light, Direction view, float /*lod*/) const {
   if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
-  return decode(bilinear_texels(uv, model_.head.width, model_.head.height),
-                model_.head.views.locate(view), model_.head.lights.locate(light), light.z);
+  const TexelStencil texels = bilinear_texels(uv, model_.head.width, model_.head.height);
+  const PairLane pairs = pair_lane(model_.head.views.locate(view), model_.head.lights.locate(light),
+                                   inverse_cosines_, light.z);
+  return lanes_ == 8 ? decode<Vec8>(texels, pairs) : decode<Vec16>(texels, pairs);
 }
 
 void PcaRepresentation::evaluate(std::span<const AppearanceQuery> queries,
                                  std::span<Rgb> answers) const {
-  decode_in_batches(
-      model_.head.views, view_locator_, model_.head.lights, light_locator_, queries, answers,
-      [&](const AppearanceQuery& query, const Stencil& views, const Stencil& lights) {
-        return decode(bilinear_texels(query.uv, model_.head.width, model_.head.height), views,
-                      lights, query.light.z);
-      });
+  decode_in_batches(queries, answers, [this](const QueryBatch& batch) {
+    return lanes_ == 8 ? decode<Vec8>(batch) : decode<Vec16>(batch);
+  });
+}
+
+// Asks for all rows before it uses the first: a table of them is larger than the nearer caches.
+template <typename Row>
+Lanes<Rgb> PcaRepresentation::decode(const QueryBatch& batch) const {
+  const TexelBatch texels = texel_batch(batch, model_.head.width, model_.head.height);
+  const Lanes<PairLane> pairs = pair_batch(view_locator_.locate(model_.head.views, batch.view),
+                                           light_locator_.locate(model_.head.lights, batch.light),
+                                           inverse_cosines_, batch.light.z);
+  Lanes<Rgb> values;
+  for (std::size_t i = 0; i < batch_lanes; ++i) values[i] = decode<Row>(texels.lane(i), pairs[i]);
+  return values;
 }
 
 std::size_t PcaRepresentation::constant_bytes() const {

@@ -36,20 +36,19 @@ class PcaRepresentation : public Representation {
   const Model& model() const { return model_; }
 
  private:
-  struct Neighbours;
-  Neighbours neighbours(const Stencil& views, const Stencil& lights, float cosine) const;
-  template <typename Lanes>
-  std::array<float, 3> component_sums(const TexelStencil& texels, const Neighbours& n) const;
-  Rgb decode(const TexelStencil& texels, const Stencil& views, const Stencil& lights,
-             float cosine) const;
+  template <typename Row>
+  Lanes<Rgb> decode(const QueryBatch& batch) const;
+  template <typename Row>
+  Rgb decode(const TexelStencil& texels, const PairLane& pairs) const;
 
   Model model_;
   BatchLocator view_locator_;
   BatchLocator light_locator_;
-  std::size_t lanes_;           // components a row below, eight or a multiple of sixteen
-  std::vector<float> weights_;  // [set][texel][lanes_]
-  std::vector<float> basis_;    // [view][light][rgb][lanes_], times scale, over cos(theta_light)
-  std::vector<float> mean_;     // [view][light][4], likewise
+  std::vector<float> inverse_cosines_;  // of the lights
+  std::size_t lanes_;                   // components a row below, eight or a multiple of sixteen
+  AlignedFloats weights_;               // [set][texel][lanes_]
+  AlignedFloats basis_;                 // [view][light][rgb][lanes_], times scale
+  AlignedFloats mean_;                  // [view][light][4]
 };
 
 }  // namespace weft::pca

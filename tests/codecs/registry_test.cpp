@@ -46,6 +46,7 @@ std::vector<Case> cases() {
   all.push_back({"dfmf", {"bits=8", "components_u=3"}});
   all.push_back({"laplacian", {"bits=half", "directions=interpolated", "filters=box2"}});
   all.push_back({"laplacian", {"bits=8", "filters=linear", "components_cb=3", "levels=1"}});
+  all.push_back({"laplacian", {"components_y=3", "components_cb=3", "components_cr=4"}});
   all.push_back({"laplacian", {"chroma_mean=cosine", "components_y=12", "prediction=open"}});
   all.push_back({"cmf", {"clusters=17", "refine=0", "levels=false", "clustering=tree"}});
   all.push_back({"cmf", {"factors=light,half,difference,view", "terms=2", "metric=cosine"}});
