@@ -26,13 +26,13 @@ class NearestTable {
   }
 
   /// Of sixteen.
-  Lanes<std::int32_t> operator()(const DirectionLanes& directions) const {
-    alignas(64) Lanes<std::int32_t> cell;
+  Batch<std::int32_t> operator()(const DirectionLanes& directions) const {
+    alignas(64) Batch<std::int32_t> cell;
     for (std::size_t i = 0; i < batch_lanes; ++i) {
       const float scale = 1 / (1 + directions.z[i]);
       cell[i] = place(directions.y[i] * scale) * size_ + place(directions.x[i] * scale);
     }
-    Lanes<std::int32_t> nearest;
+    Batch<std::int32_t> nearest;
     for (std::size_t i = 0; i < batch_lanes; ++i) nearest[i] = table_[cell[i]];
     return nearest;
   }

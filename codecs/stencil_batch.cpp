@@ -118,7 +118,7 @@ inline PairLane pair_lane(const StencilLane& views, const StencilLane& lights,
 }
 
 // `place` counts texels from the first one's centre, and is in [-0.5, size - 0.5] or a NaN.
-AxisBatch axis_batch(const Lanes<float>& place, const Lanes<std::int32_t>& size) {
+AxisBatch axis_batch(const Batch<float>& place, const Batch<std::int32_t>& size) {
   AxisBatch axis;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     const float below = std::floor(place[i]);
@@ -158,22 +158,22 @@ QueryBatch query_batch(std::span<const AppearanceQuery> queries) {
   return batch;
 }
 
-AxisBatch column_batch(const Lanes<float>& u, const Lanes<std::int32_t>& size) {
-  alignas(64) Lanes<float> place;
+AxisBatch column_batch(const Batch<float>& u, const Batch<std::int32_t>& size) {
+  alignas(64) Batch<float> place;
   for (std::size_t i = 0; i < batch_lanes; ++i)
     place[i] = (u[i] - std::floor(u[i])) * static_cast<float>(size[i]) - 0.5F;
   return axis_batch(place, size);
 }
 
-AxisBatch row_batch(const Lanes<float>& v, const Lanes<std::int32_t>& size) {
-  alignas(64) Lanes<float> place;
+AxisBatch row_batch(const Batch<float>& v, const Batch<std::int32_t>& size) {
+  alignas(64) Batch<float> place;
   for (std::size_t i = 0; i < batch_lanes; ++i)
     place[i] = (1 - (v[i] - std::floor(v[i]))) * static_cast<float>(size[i]) - 0.5F;
   return axis_batch(place, size);
 }
 
 TexelBatch texel_batch(const AxisBatch& columns, const AxisBatch& rows,
-                       const Lanes<std::int32_t>& width) {
+                       const Batch<std::int32_t>& width) {
   TexelBatch texels;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     const std::int32_t low = rows.low[i] * width[i];
@@ -193,8 +193,8 @@ TexelBatch texel_batch(const AxisBatch& columns, const AxisBatch& rows,
 }
 
 TexelBatch texel_batch(const QueryBatch& queries, int width, int height) {
-  Lanes<std::int32_t> columns;
-  Lanes<std::int32_t> rows;
+  Batch<std::int32_t> columns;
+  Batch<std::int32_t> rows;
   columns.fill(width);
   rows.fill(height);
   return texel_batch(column_batch(queries.u, columns), row_batch(queries.v, rows), columns);
@@ -300,9 +300,9 @@ std::uint16_t BatchLocator::face_of(std::uint16_t start, float x, float y) const
 StencilBatch BatchLocator::locate(const HemisphereSampling& sampling,
                                   const DirectionLanes& directions) const {
   StencilBatch batch;
-  alignas(64) Lanes<float> x;
-  alignas(64) Lanes<float> y;
-  alignas(64) Lanes<std::int32_t> cell;
+  alignas(64) Batch<float> x;
+  alignas(64) Batch<float> y;
+  alignas(64) Batch<std::int32_t> cell;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     x[i] = directions.x[i] / (1 + directions.z[i]);
     y[i] = directions.y[i] / (1 + directions.z[i]);
@@ -331,9 +331,9 @@ StencilBatch BatchLocator::locate(const HemisphereSampling& sampling,
   return batch;
 }
 
-Lanes<PairLane> pair_batch(const StencilBatch& views, const StencilBatch& lights,
-                           std::span<const float> of_light, const Lanes<float>& factor) {
-  Lanes<PairLane> pairs;
+Batch<PairLane> pair_batch(const StencilBatch& views, const StencilBatch& lights,
+                           std::span<const float> of_light, const Batch<float>& factor) {
+  Batch<PairLane> pairs;
   for (std::size_t i = 0; i < batch_lanes; ++i)
     pairs[i] = pair_lane(views[i], lights[i], of_light, factor[i]);
   return pairs;

@@ -20,24 +20,24 @@ constexpr std::size_t batch_lanes = 16;
 
 /// One value of each of the sixteen.
 template <typename Value>
-using Lanes = std::array<Value, batch_lanes>;
+using Batch = std::array<Value, batch_lanes>;
 
 /// Rows of numbers that begin at the beginning of a cache line.
 using AlignedFloats = std::vector<float, oneapi::tbb::cache_aligned_allocator<float>>;
 
 struct DirectionLanes {
-  alignas(64) Lanes<float> x;
-  alignas(64) Lanes<float> y;
-  alignas(64) Lanes<float> z;
+  alignas(64) Batch<float> x;
+  alignas(64) Batch<float> y;
+  alignas(64) Batch<float> z;
 };
 
 struct QueryBatch {
-  alignas(64) Lanes<float> u;
-  alignas(64) Lanes<float> v;
-  alignas(64) Lanes<float> lod;
+  alignas(64) Batch<float> u;
+  alignas(64) Batch<float> v;
+  alignas(64) Batch<float> lod;
   DirectionLanes light;
   DirectionLanes view;
-  Lanes<bool> is_seen;  ///< light and view are above the horizon; where not, they are the normal
+  Batch<bool> is_seen;  ///< light and view are above the horizon; where not, they are the normal
 };
 
 /// @param queries  one to sixteen; the last one fills the lanes beyond.
@@ -45,18 +45,18 @@ QueryBatch query_batch(std::span<const AppearanceQuery> queries);
 
 /// The twin of `AxisStencil`.
 struct AxisBatch {
-  alignas(64) Lanes<std::int32_t> low;
-  alignas(64) Lanes<std::int32_t> high;
-  alignas(64) Lanes<float> blend;
+  alignas(64) Batch<std::int32_t> low;
+  alignas(64) Batch<std::int32_t> high;
+  alignas(64) Batch<float> blend;
 };
 /// Of `size` columns, or rows.
-AxisBatch column_batch(const Lanes<float>& u, const Lanes<std::int32_t>& size);
-AxisBatch row_batch(const Lanes<float>& v, const Lanes<std::int32_t>& size);
+AxisBatch column_batch(const Batch<float>& u, const Batch<std::int32_t>& size);
+AxisBatch row_batch(const Batch<float>& v, const Batch<std::int32_t>& size);
 
 /// The twin of `TexelStencil`, [texel][lane].
 struct TexelBatch {
-  alignas(64) std::array<Lanes<std::int32_t>, 4> index;
-  alignas(64) std::array<Lanes<float>, 4> weight;
+  alignas(64) std::array<Batch<std::int32_t>, 4> index;
+  alignas(64) std::array<Batch<float>, 4> weight;
 
   TexelStencil lane(std::size_t i) const {
     TexelStencil texels;
@@ -68,7 +68,7 @@ struct TexelBatch {
   }
 };
 TexelBatch texel_batch(const AxisBatch& columns, const AxisBatch& rows,
-                       const Lanes<std::int32_t>& width);
+                       const Batch<std::int32_t>& width);
 TexelBatch texel_batch(const QueryBatch& queries, int width, int height);
 
 /// Three neighbours of each direction and their weights; the fourth place holds index and weight 0.
@@ -76,7 +76,7 @@ struct alignas(16) StencilLane {
   std::array<std::int32_t, 4> index;
   std::array<float, 4> weight;
 };
-using StencilBatch = Lanes<StencilLane>;
+using StencilBatch = Batch<StencilLane>;
 
 /// The same stencils as `HemisphereSampling::locate`'s but for rounding, without its branches: the
 /// plane is cut into faces, which are the triangles, the strips beyond the hull's edges and the
@@ -115,13 +115,13 @@ struct alignas(64) PairLane {
 };
 /// @param of_light  what the weights of each light are multiplied by.
 /// @param factor    what all of a lane's are multiplied by.
-Lanes<PairLane> pair_batch(const StencilBatch& views, const StencilBatch& lights,
-                           std::span<const float> of_light, const Lanes<float>& factor);
+Batch<PairLane> pair_batch(const StencilBatch& views, const StencilBatch& lights,
+                           std::span<const float> of_light, const Batch<float>& factor);
 /// Of one query.
 PairLane pair_lane(const Stencil& views, const Stencil& lights, std::span<const float> of_light,
                    float factor);
 
-/// Answers queries sixteen at a time: `decode(batch)` of type `Lanes<Rgb>(const QueryBatch&)`
+/// Answers queries sixteen at a time: `decode(batch)` of type `Batch<Rgb>(const QueryBatch&)`
 /// where light and view are above the horizon, 0 elsewhere.
 template <typename Decode>
 void decode_in_batches(std::span<const AppearanceQuery> queries, std::span<Rgb> answers,
@@ -129,7 +129,7 @@ void decode_in_batches(std::span<const AppearanceQuery> queries, std::span<Rgb> 
   for (std::size_t first = 0; first < queries.size(); first += batch_lanes) {
     const std::size_t count = std::min<std::size_t>(batch_lanes, queries.size() - first);
     const QueryBatch batch = query_batch(queries.subspan(first, count));
-    const Lanes<Rgb> values = decode(batch);
+    const Batch<Rgb> values = decode(batch);
     for (std::size_t i = 0; i < count; ++i)
       answers[first + i] = batch.is_seen[i] ? values[i] : Rgb(0, 0, 0);
   }

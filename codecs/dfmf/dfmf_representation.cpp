@@ -88,10 +88,10 @@ void DfmfRepresentation::evaluate(std::span<const AppearanceQuery> queries,
                                   std::span<Rgb> answers) const {
   decode_in_batches(queries, answers, [this](const QueryBatch& batch) {
     const TexelBatch texels = texel_batch(batch, model_.head.width, model_.head.height);
-    const Lanes<PairLane> pairs =
+    const Batch<PairLane> pairs =
         pair_batch(view_locator_.locate(model_.head.views, batch.view),
                    light_locator_.locate(model_.head.lights, batch.light), ones_, batch.light.z);
-    Lanes<Rgb> values;
+    Batch<Rgb> values;
     for (std::size_t i = 0; i < batch_lanes; ++i) values[i] = decode(texels.lane(i), pairs[i]);
     return values;
   });

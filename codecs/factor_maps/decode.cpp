@@ -16,49 +16,59 @@ namespace weft::factor_maps {
 
 namespace {
 
-using Byte8 = std::uint8_t __attribute__((vector_size(8)));
+using Byte16 = std::uint8_t __attribute__((vector_size(16)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
+using Int16 = std::int32_t __attribute__((vector_size(64)));
 
-constexpr Float8 left_weight = {1, 1, 1, 0, 0, 0, 0, 0};
-constexpr Float8 right_minus_left = {-1, -1, -1, 1, 1, 1, 0, 0};
+constexpr Float16 left_weight = {1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0};
+constexpr Float16 right_minus_left = {-1, -1, -1, 1, 1, 1, 0, 0, 0, 0, -1, -1, -1, 1, 1, 1};
+constexpr Float16 upper_weight = {1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0};
+constexpr Float16 lower_minus_upper = {-1, -1, -1, -1, -1, -1, -1, -1, 1, 1, 1, 1, 1, 1, 1, 1};
 
 // The compiler's own conversion of vectors takes bytes apart in many steps: half of the decoder's
 // time.
-inline Float8 floats_of(std::uint64_t eight_bytes) {
-#ifdef __AVX2__
-  return _mm256_cvtepi32_ps(
-      _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<std::int64_t>(eight_bytes))));
+inline Float16 floats_of(const Byte16& bytes) {
+#ifdef __AVX512F__
+  // Unmasked, GCC 12 takes its own header for uninitialised (its bug 105593).
+  return __builtin_convertvector((Int16)_mm512_maskz_cvtepu8_epi32(0xFFFF, (__m128i)bytes),
+                                 Float16);
+#elif defined(__AVX2__)
+  const auto b = (__m128i)bytes;
+  const std::array<__m256, 2> halves{
+      _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(b)),
+      _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_srli_si128(b, 8)))};
+  Float16 values;
+  std::memcpy(&values, halves.data(), sizeof values);
+  return values;
 #else
-  Byte8 bytes;
-  std::memcpy(&bytes, &eight_bytes, sizeof bytes);
-  return __builtin_convertvector(__builtin_convertvector(bytes, Int8), Float8);
+  return __builtin_convertvector(__builtin_convertvector(bytes, Int16), Float16);
 #endif
 }
 
-// Eight values from `row` on, of which six count: there is a row below, so none is beyond the end.
-inline Float8 upper_row(const std::uint8_t* row) {
-  std::uint64_t bytes;
-  std::memcpy(&bytes, row, sizeof bytes);
+// Eight values from `row` on, of which six count, and eight that end with the six of the row below:
+// that way neither reads beyond the map.
+inline Float16 two_rows(const std::uint8_t* row, std::size_t row_values) {
+  std::array<std::uint64_t, 2> rows;
+  std::memcpy(&rows[0], row, 8);
+  std::memcpy(&rows[1], row + row_values - 2, 8);
+  Byte16 bytes;
+  std::memcpy(&bytes, &rows, sizeof bytes);
   return floats_of(bytes);
 }
-inline Float8 upper_row(const float* row) {
-  Float8 values;
-  std::memcpy(&values, row, sizeof values);
+inline Float16 two_rows(const float* row, std::size_t row_values) {
+  std::array<Float8, 2> rows;
+  std::memcpy(&rows[0], row, sizeof rows[0]);
+  std::memcpy(&rows[1], row + row_values - 2, sizeof rows[1]);
+  Float16 values;
+  std::memcpy(&values, &rows, sizeof values);
   return values;
 }
 
-// The same of a row that may be a map's last: read from two values before, which are there.
-inline Float8 lower_row(const std::uint8_t* row) {
-  std::uint64_t bytes;
-  std::memcpy(&bytes, row - 2, sizeof bytes);
-  return floats_of(bytes >> 16);
+inline Float8 low8(const Float16& v) {
+  Float8 result;
+  std::memcpy(&result, &v, sizeof result);
+  return result;
 }
-inline Float8 lower_row(const float* row) {
-  Float8 values;
-  std::memcpy(&values, row - 2, sizeof values);
-  return __builtin_shuffle(values, Int8{2, 3, 4, 5, 6, 7, 0, 1});
-}
-
 inline Float4 low(const Float8& v) {
   Float4 result;
   std::memcpy(&result, &v, sizeof result);
@@ -66,10 +76,26 @@ inline Float4 low(const Float8& v) {
 }
 
 template <typename Value>
+[[gnu::always_inline]] inline Float4 blended(const Value* first, std::size_t row_values,
+                                             const Float16& weight) {
+  const Float16 v = two_rows(first, row_values) * weight;
+  const Float8 rows =
+      low8(v) +
+      low8(__builtin_shuffle(v, Int16{10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  return low(rows + __builtin_shuffle(rows, Int8{3, 4, 5, 6, 7, 0, 1, 2}));
+}
+
+template <typename Value>
 inline Float4 looked_up(const Value* map, std::size_t row_values, const MapPlace& place) {
-  const Value* upper = map + place.first;
-  const Float8 sum = upper_row(upper) * place.upper + lower_row(upper + row_values) * place.lower;
-  return low(sum + __builtin_shuffle(sum, Int8{3, 4, 5, 3, 4, 5, 3, 3}));
+  return blended(map + place.first, row_values, place.weight);
+}
+
+inline Float16 blend_weights(float across, float down) {
+  return (left_weight + across * right_minus_left) * (upper_weight + down * lower_minus_upper);
+}
+
+inline MapPlace map_place(int first, float across, float down) {
+  return {static_cast<std::uint32_t>(first), blend_weights(across, down)};
 }
 
 // p in the parabolic plane, `last` = resolution - 1. A NaN may not be cast; it stays in the
@@ -80,10 +106,8 @@ inline MapPlace place_at(float px, float py, int resolution) {
   const float y = std::clamp((1 - py) * 0.5F * last, 0.0F, last);
   const int column = x > 0 ? std::min(static_cast<int>(x), resolution - 2) : 0;
   const int row = y > 0 ? std::min(static_cast<int>(y), resolution - 2) : 0;
-  const float b = y - static_cast<float>(row);
-  const Float8 across = left_weight + (x - static_cast<float>(column)) * right_minus_left;
-  return {static_cast<std::uint32_t>(3 * (row * resolution + column)), across * (1 - b),
-          across * b};
+  return map_place(3 * (row * resolution + column), x - static_cast<float>(column),
+                   y - static_cast<float>(row));
 }
 
 // The parabolic image of the half-vector, without normalising it first.
@@ -136,16 +160,24 @@ Decoder::Decoder(const Model& model) : model_(model), map_values_(model.values_a
 }
 
 template <typename Value>
-inline Float4 Decoder::product(const Value* const* maps, const Texel& texel,
-                               const MapPlaces& places) const {
+[[gnu::always_inline]] inline Float4 Decoder::product(const Value* const* maps, const Texel& texel,
+                                                      const MapPlaces& places) const {
   const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
   const auto own = [&](std::size_t f) {
     return looked_up(maps[f] + texel.map[f] * map_values_, row_values, places[f]);
   };
   if (plain_) return texel.scale * own(0) * own(1) * own(2);
+  return product_of_links(maps, texel, places);
+}
+
+template <typename Value>
+Float4 Decoder::product_of_links(const Value* const* maps, const Texel& texel,
+                                 const MapPlaces& places) const {
+  const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
   Float4 result = texel.scale;
   if (single_terms_) {
-    for (std::size_t f = 0; f < model_.factors.size(); ++f) result *= own(f);
+    for (std::size_t f = 0; f < model_.factors.size(); ++f)
+      result *= looked_up(maps[f] + texel.map[f] * map_values_, row_values, places[f]);
     return result;
   }
   for (int link = 0; link < link_count; ++link) {
@@ -172,7 +204,8 @@ inline Float4 Decoder::product(const Value* const* maps, const Texel& texel,
   return result;
 }
 
-inline Float4 Decoder::value4(std::size_t texel, const MapPlaces& places) const {
+[[gnu::always_inline]] inline Float4 Decoder::value4(std::size_t texel,
+                                                     const MapPlaces& places) const {
   return bytes_[0] != nullptr ? product(bytes_.data(), texels_[texel], places)
                               : product(floats_.data(), texels_[texel], places);
 }
@@ -248,26 +281,11 @@ Rgb Decoder::evaluate(const Texcoord& uv, const Direction& light, const Directio
 
 namespace {
 
-// Sixteen queries side by side: loops over these arrays become vector instructions.
-constexpr std::size_t block_size = 16;
-template <typename Value>
-using Block = std::array<Value, block_size>;
-
-struct DirectionBlock {
-  Block<float> x, y, z;
-};
-
-// Where sixteen directions lie in a map, as `MapPlace` before its weights are spread.
-struct PlaceBlock {
-  Block<std::int32_t> first;
-  Block<float> across, down;
-};
-
 // A NaN (the half of opposite directions on the horizon) lies at 0: of std::max, the first stays.
-void place_block(const Block<float>& px, const Block<float>& py, int resolution,
-                 PlaceBlock& places) {
+PlaceLanes place_lanes(const Batch<float>& px, const Batch<float>& py, int resolution) {
   const auto last = static_cast<float>(resolution - 1);
-  for (std::size_t i = 0; i < block_size; ++i) {
+  PlaceLanes places;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
     const float x = std::min(std::max(0.0F, (px[i] + 1) * 0.5F * last), last);
     const float y = std::min(std::max(0.0F, (1 - py[i]) * 0.5F * last), last);
     const int column = std::min(static_cast<int>(x), resolution - 2);
@@ -276,25 +294,26 @@ void place_block(const Block<float>& px, const Block<float>& py, int resolution,
     places.across[i] = x - static_cast<float>(column);
     places.down[i] = y - static_cast<float>(row);
   }
+  return places;
 }
 
-// Parabolic images of directions, or of the half-vectors of pairs of them.
-void place_block(const DirectionBlock& d, int resolution, PlaceBlock& places) {
-  Block<float> px;
-  Block<float> py;
-  for (std::size_t i = 0; i < block_size; ++i) {
+// Of directions.
+PlaceLanes place_lanes(const DirectionLanes& d, int resolution) {
+  alignas(64) Batch<float> px;
+  alignas(64) Batch<float> py;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
     const float scale = 1 / (1 + d.z[i]);
     px[i] = d.x[i] * scale;
     py[i] = d.y[i] * scale;
   }
-  place_block(px, py, resolution, places);
+  return place_lanes(px, py, resolution);
 }
 
-void place_halves(const DirectionBlock& light, const DirectionBlock& view, int resolution,
-                  PlaceBlock& places) {
-  Block<float> px;
-  Block<float> py;
-  for (std::size_t i = 0; i < block_size; ++i) {
+// Of the half-vectors of pairs of them.
+PlaceLanes half_lanes(const DirectionLanes& light, const DirectionLanes& view, int resolution) {
+  alignas(64) Batch<float> px;
+  alignas(64) Batch<float> py;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
     const float x = light.x[i] + view.x[i];
     const float y = light.y[i] + view.y[i];
     const float z = light.z[i] + view.z[i];
@@ -302,126 +321,140 @@ void place_halves(const DirectionBlock& light, const DirectionBlock& view, int r
     px[i] = x * scale;
     py[i] = y * scale;
   }
-  place_block(px, py, resolution, places);
-}
-
-// The twin of `bilinear_texels`.
-struct TexelBlock {
-  std::array<Block<std::int32_t>, 4> index;
-  std::array<Block<float>, 4> weight;
-};
-
-void texel_block(const Block<float>& u, const Block<float>& v, int width, int height,
-                 TexelBlock& texels) {
-  for (std::size_t i = 0; i < block_size; ++i) {
-    const float x = (u[i] - std::floor(u[i])) * static_cast<float>(width) - 0.5F;
-    const float y = (1 - (v[i] - std::floor(v[i]))) * static_cast<float>(height) - 0.5F;
-    const float fx = std::floor(x);
-    const float fy = std::floor(y);
-    const int left = static_cast<int>(fx);
-    const int top = static_cast<int>(fy);
-    const int x0 = left < 0 ? width - 1 : left >= width ? 0 : left;
-    const int x1 = left + 1 >= width ? 0 : left + 1;
-    const int y0 = width * (top < 0 ? height - 1 : top >= height ? 0 : top);
-    const int y1 = width * (top + 1 >= height ? 0 : top + 1);
-    const float a = x - fx;
-    const float b = y - fy;
-    texels.index[0][i] = y0 + x0;
-    texels.index[1][i] = y0 + x1;
-    texels.index[2][i] = y1 + x0;
-    texels.index[3][i] = y1 + x1;
-    texels.weight[0][i] = (1 - a) * (1 - b);
-    texels.weight[1][i] = a * (1 - b);
-    texels.weight[2][i] = (1 - a) * b;
-    texels.weight[3][i] = a * b;
-  }
-}
-
-bool is_finite(const AppearanceQuery& q) {
-  return std::isfinite(q.uv.x + q.uv.y + q.light.x + q.light.y + q.light.z + q.view.x + q.view.y +
-                       q.view.z);
+  return place_lanes(px, py, resolution);
 }
 
 }  // namespace
 
 void Decoder::evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const {
-  for (std::size_t first = 0; first < queries.size(); first += block_size) {
-    const std::size_t count = std::min(block_size, queries.size() - first);
-    const auto part = queries.subspan(first, count);
-    // What turns directions, asks a coarser level or is no number goes one by one.
-    const bool alike = count == block_size && model_.rotation.empty() &&
-                       std::ranges::all_of(part, [](const AppearanceQuery& q) {
-                         return !(q.lod > 0) && is_finite(q);
-                       });
-    if (alike) {
-      evaluate_block(part, answers.subspan(first, count));
-      continue;
-    }
-    for (std::size_t i = first; i < first + count; ++i) {
-      const AppearanceQuery& q = queries[i];
-      answers[i] = evaluate(q.uv, q.light, q.view, q.lod);
-    }
+  // What turns directions goes one by one.
+  if (!model_.rotation.empty()) {
+    for (std::size_t i = 0; i < queries.size(); ++i)
+      answers[i] = evaluate(queries[i].uv, queries[i].light, queries[i].view, queries[i].lod);
+    return;
   }
+  decode_in_batches(queries, answers, [this](const QueryBatch& batch) { return decode(batch); });
 }
 
-void Decoder::evaluate_block(std::span<const AppearanceQuery> queries,
-                             std::span<Rgb> answers) const {
-  Block<float> u;
-  Block<float> v;
-  DirectionBlock light;
-  DirectionBlock view;
-  for (std::size_t i = 0; i < block_size; ++i) {
-    const AppearanceQuery& q = queries[i];
-    u[i] = q.uv.x;
-    v[i] = q.uv.y;
-    // Below the horizon the answer is 0 whatever is read: read at the horizon.
-    light.x[i] = q.light.x;
-    light.y[i] = q.light.y;
-    light.z[i] = std::max(q.light.z, 0.0F);
-    view.x[i] = q.view.x;
-    view.y[i] = q.view.y;
-    view.z[i] = std::max(q.view.z, 0.0F);
-  }
-  TexelBlock texels;
-  texel_block(u, v, model_.width(), model_.height(), texels);
-  std::array<PlaceBlock, max_factors> blocks;
+std::array<PlaceLanes, max_factors> Decoder::places(const QueryBatch& batch) const {
+  std::array<PlaceLanes, max_factors> places;
   for (std::size_t f = 0; f < model_.factors.size(); ++f) {
     switch (model_.factors[f].projection) {
       case Projection::light:
-        place_block(light, model_.resolution, blocks[f]);
+        places[f] = place_lanes(batch.light, model_.resolution);
         break;
       case Projection::half:
-        place_halves(light, view, model_.resolution, blocks[f]);
+        places[f] = half_lanes(batch.light, batch.view, model_.resolution);
         break;
       case Projection::difference: {
-        DirectionBlock difference;
-        for (std::size_t i = 0; i < block_size; ++i) {
-          const Direction d = difference_vector(queries[i].light, queries[i].view);
+        DirectionLanes difference;
+        for (std::size_t i = 0; i < batch_lanes; ++i) {
+          const Direction d =
+              difference_vector({batch.light.x[i], batch.light.y[i], batch.light.z[i]},
+                                {batch.view.x[i], batch.view.y[i], batch.view.z[i]});
           difference.x[i] = d.x;
           difference.y[i] = d.y;
           difference.z[i] = d.z;
         }
-        place_block(difference, model_.resolution, blocks[f]);
+        places[f] = place_lanes(difference, model_.resolution);
         break;
       }
       case Projection::view:
-        place_block(view, model_.resolution, blocks[f]);
+        places[f] = place_lanes(batch.view, model_.resolution);
         break;
     }
   }
-  for (std::size_t i = 0; i < block_size; ++i) {
-    MapPlaces places;
-    for (std::size_t f = 0; f < model_.factors.size(); ++f) {
-      const Float8 across = left_weight + blocks[f].across[i] * right_minus_left;
-      places[f] = {static_cast<std::uint32_t>(blocks[f].first[i]), across * (1 - blocks[f].down[i]),
-                   across * blocks[f].down[i]};
+  return places;
+}
+
+// The four texels around uv at levels `fine`, weights times `share`.
+TexelBatch Decoder::level_texels(const QueryBatch& batch, const Batch<std::int32_t>& levels,
+                                 const Batch<float>& share) const {
+  Batch<std::int32_t> width;
+  Batch<std::int32_t> height;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    width[i] = model_.levels[levels[i]].width;
+    height[i] = model_.levels[levels[i]].height;
+  }
+  TexelBatch texels = texel_batch(column_batch(batch.u, width), row_batch(batch.v, height), width);
+  for (std::size_t t = 0; t < 4; ++t) {
+    for (std::size_t i = 0; i < batch_lanes; ++i) {
+      texels.index[t][i] += static_cast<std::int32_t>(model_.levels[levels[i]].first);
+      texels.weight[t][i] *= share[i];
     }
-    Float4 sum = {};
+  }
+  return texels;
+}
+
+Batch<Rgb> Decoder::decode(const QueryBatch& batch) const {
+  const auto last = static_cast<float>(model_.levels.size() - 1);
+  Batch<std::int32_t> level;
+  alignas(64) Batch<float> blend;
+  alignas(64) Batch<float> rest;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    const float lod = batch.lod[i] > 0 ? std::min(batch.lod[i], last) : 0;  // a NaN is level 0
+    level[i] = static_cast<std::int32_t>(lod);
+    blend[i] = lod - static_cast<float>(level[i]);
+    rest[i] = 1 - blend[i];
+  }
+  const std::array<PlaceLanes, max_factors> places = this->places(batch);
+  Batch<Float4> sums{};
+  add_level(level_texels(batch, level, rest), places, sums);
+  if (std::ranges::max(blend) > 0) {
+    for (std::int32_t& k : level) k = std::min(k + 1, static_cast<std::int32_t>(last));
+    add_level(level_texels(batch, level, blend), places, sums);
+  }
+  Batch<Rgb> values;
+  for (std::size_t i = 0; i < batch_lanes; ++i)
+    values[i] = Rgb(sums[i][0], sums[i][1], sums[i][2]) * batch.light.z[i];
+  return values;
+}
+
+void Decoder::add_level(const TexelBatch& texels, const std::array<PlaceLanes, max_factors>& places,
+                        Batch<Float4>& sums) const {
+  if (plain_) {
+    return bytes_[0] != nullptr ? add_plain(bytes_.data(), texels, places, sums)
+                                : add_plain(floats_.data(), texels, places, sums);
+  }
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    MapPlaces of_lane;
+    for (std::size_t f = 0; f < model_.factors.size(); ++f)
+      of_lane[f] = map_place(places[f].first[i], places[f].across[i], places[f].down[i]);
+    for (std::size_t t = 0; t < 4; ++t)
+      sums[i] += value4(texels.index[t][i], of_lane) * texels.weight[t][i];
+  }
+}
+
+// Asks for all rows of the maps before it uses the first: the maps are larger than the nearer
+// caches.
+template <typename Value>
+void Decoder::add_plain(const Value* const* maps, const TexelBatch& texels,
+                        const std::array<PlaceLanes, max_factors>& places,
+                        Batch<Float4>& sums) const {
+  const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
+  std::array<std::array<std::array<const Value*, 3>, 4>, batch_lanes> first;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
     for (std::size_t t = 0; t < 4; ++t) {
-      sum += value4(static_cast<std::size_t>(texels.index[t][i]), places) * texels.weight[t][i];
+      const Texel& texel = texels_[texels.index[t][i]];
+      for (std::size_t f = 0; f < 3; ++f) {
+        first[i][t][f] = maps[f] + texel.map[f] * map_values_ + places[f].first[i];
+        __builtin_prefetch(first[i][t][f]);
+        __builtin_prefetch(first[i][t][f] + row_values);
+      }
     }
-    const bool above = queries[i].light.z > 0 && queries[i].view.z > 0;
-    answers[i] = above ? Rgb(sum[0], sum[1], sum[2]) * queries[i].light.z : Rgb(0, 0, 0);
+  }
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    std::array<Float16, 3> weight;
+    for (std::size_t f = 0; f < 3; ++f)
+      weight[f] = blend_weights(places[f].across[i], places[f].down[i]);
+    Float4 sum = sums[i];
+    for (std::size_t t = 0; t < 4; ++t) {
+      sum += texels_[texels.index[t][i]].scale * texels.weight[t][i] *
+             blended(first[i][t][0], row_values, weight[0]) *
+             blended(first[i][t][1], row_values, weight[1]) *
+             blended(first[i][t][2], row_values, weight[2]);
+    }
+    sums[i] = sum;
   }
 }
 

@@ -1,7 +1,7 @@
 // From a model to values: bilinear lookups in the maps of the four texels around uv, multiplied.
 //
-// A lookup of three channels in two neighbouring texels of a map's row is one vector of eight
-// floats: two loads, two multiplications and one fold are a bilinear lookup. What does not depend
+// A lookup of three channels in two by two neighbouring texels of a map is one vector of sixteen
+// floats: two loads, one multiplication and two folds. What does not depend
 // on the texel (where the directions lie in the maps) is reckoned once a query, and for sixteen
 // queries at a time where many are asked.
 #pragma once
@@ -13,20 +13,29 @@
 
 #include "btf/appearance.h"
 #include "codecs/factor_maps/model.h"
+#include "codecs/stencil_batch.h"
 
 namespace weft::factor_maps {
 
 using Float4 = float __attribute__((vector_size(16)));
 using Float8 = float __attribute__((vector_size(32)));
+using Float16 = float __attribute__((vector_size(64)));
 
 /// Where a direction lies in a map: the upper left of its four texels, and how they blend.
 struct MapPlace {
   std::uint32_t first;  ///< of the map's values, that texel's red
-  Float8 upper;         ///< weights of r g b r g b and two unused values from `first` on
-  Float8 lower;         ///< of the row below
+  Float16 weight;       ///< of r g b r g b and two unused values from `first` on, and of two unused
+                        ///< ones and r g b r g b of the row below
 };
 /// Only those of the model's factors are set.
 using MapPlaces = std::array<MapPlace, max_factors>;
+
+/// Where sixteen directions lie in a map, before their weights are spread.
+struct PlaceLanes {
+  alignas(64) Batch<std::int32_t> first;
+  alignas(64) Batch<float> across;
+  alignas(64) Batch<float> down;
+};
 
 /// Decodes one model, which must outlive it and keep its arrays where they are.
 class Decoder {
@@ -49,10 +58,21 @@ class Decoder {
   };
   template <typename Value>
   Float4 product(const Value* const* maps, const Texel& texel, const MapPlaces& places) const;
+  template <typename Value>
+  Float4 product_of_links(const Value* const* maps, const Texel& texel,
+                          const MapPlaces& places) const;
   Float4 value4(std::size_t texel, const MapPlaces& places) const;
   Rgb level_value(const Level& level, const Texcoord& uv, const Direction& light,
                   const Direction& view, const MapPlaces& places) const;
-  void evaluate_block(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
+  std::array<PlaceLanes, max_factors> places(const QueryBatch& batch) const;
+  TexelBatch level_texels(const QueryBatch& batch, const Batch<std::int32_t>& levels,
+                          const Batch<float>& share) const;
+  void add_level(const TexelBatch& texels, const std::array<PlaceLanes, max_factors>& places,
+                 Batch<Float4>& sums) const;
+  template <typename Value>
+  void add_plain(const Value* const* maps, const TexelBatch& texels,
+                 const std::array<PlaceLanes, max_factors>& places, Batch<Float4>& sums) const;
+  Batch<Rgb> decode(const QueryBatch& batch) const;
 
   const Model& model_;
   bool single_terms_ = true;

@@ -44,8 +44,8 @@ Corners corners(Texcoord uv, int width, int height) {
 }
 
 // Equation 5, side by side.
-Lanes<float> phong_means(const Phong& phong, const QueryBatch& batch) {
-  alignas(64) Lanes<float> mean;
+Batch<float> phong_means(const Phong& phong, const QueryBatch& batch) {
+  alignas(64) Batch<float> mean;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     const float x = batch.light.x[i] + batch.view.x[i];
     const float y = batch.light.y[i] + batch.view.y[i];
@@ -59,23 +59,23 @@ Lanes<float> phong_means(const Phong& phong, const QueryBatch& batch) {
 
 // Texels of the levels `grid` around uv, whose parents count with the same weights.
 struct BoxBatch {
-  Lanes<std::int32_t> grid;
+  Batch<std::int32_t> grid;
   AxisBatch x;
   AxisBatch y;
-  std::array<Lanes<float>, 4> weight;
+  std::array<Batch<float>, 4> weight;
 };
 
-BoxBatch box_batch(const Pyramid& pyramid, const QueryBatch& batch, const Lanes<std::int32_t>& grid,
-                   const Lanes<float>& share) {
-  alignas(64) Lanes<std::int32_t> width;
-  alignas(64) Lanes<std::int32_t> height;
+BoxBatch box_batch(const Pyramid& pyramid, const QueryBatch& batch, const Batch<std::int32_t>& grid,
+                   const Batch<float>& share) {
+  alignas(64) Batch<std::int32_t> width;
+  alignas(64) Batch<std::int32_t> height;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     width[i] = pyramid.width >> grid[i];
     height[i] = pyramid.height >> grid[i];
   }
   BoxBatch boxes{grid, column_batch(batch.u, width), row_batch(batch.v, height), {}};
   boxes.weight = texel_batch(boxes.x, boxes.y, width).weight;
-  for (Lanes<float>& weight : boxes.weight) {
+  for (Batch<float>& weight : boxes.weight) {
     for (std::size_t i = 0; i < batch_lanes; ++i) weight[i] *= share[i];
   }
   return boxes;
@@ -103,9 +103,9 @@ TexelBatch box_texels(const Pyramid& pyramid, const BoxBatch& boxes, int level) 
 }
 
 TexelBatch linear_texels(const Pyramid& pyramid, const QueryBatch& batch,
-                         const Lanes<std::int32_t>& grid, const Lanes<float>& blend, int level) {
+                         const Batch<std::int32_t>& grid, const Batch<float>& blend, int level) {
   TexelBatch texels = texel_batch(batch, pyramid.width_of(level), pyramid.height_of(level));
-  for (Lanes<float>& weight : texels.weight) {
+  for (Batch<float>& weight : texels.weight) {
     for (std::size_t i = 0; i < batch_lanes; ++i)  // w_k
       weight[i] *= level < grid[i] ? 0 : level == grid[i] ? 1 - blend[i] : 1;
   }
@@ -306,14 +306,14 @@ void LaplacianRepresentation::evaluate(std::span<const AppearanceQuery> queries,
 
 // The levels one after the other, each of all lanes.
 template <std::size_t Quads>
-Lanes<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
-  const Lanes<Pairs> pairs = pairs_of(batch);
-  const Lanes<float> mean = phong_means(model_.mean_y, batch);
+Batch<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
+  const Batch<Pairs> pairs = pairs_of(batch);
+  const Batch<float> mean = phong_means(model_.mean_y, batch);
   alignas(64) std::array<float, batch_lanes*(Quads == 3 ? 16 : most_slots)> sums;
   std::fill_n(sums.begin(), batch_lanes * stride_, 0.0F);
   const Pyramid& pyramid = model_.pyramid;
-  Lanes<std::int32_t> grid;
-  Lanes<float> blend;
+  Batch<std::int32_t> grid;
+  Batch<float> blend;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     const float lambda = level_of(batch.lod[i], pyramid.top);
     grid[i] = static_cast<std::int32_t>(lambda);
@@ -337,7 +337,7 @@ Lanes<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
       for (int level = std::ranges::min(boxes.grid); level <= pyramid.top; ++level)
         add(level, box_texels(pyramid, boxes, level));
     };
-    alignas(64) Lanes<float> rest;
+    alignas(64) Batch<float> rest;
     for (std::size_t i = 0; i < batch_lanes; ++i) rest[i] = 1 - blend[i];
     add_boxes(box_batch(pyramid, batch, grid, rest));
     if (std::ranges::max(blend) > 0) {
@@ -345,12 +345,12 @@ Lanes<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
       add_boxes(box_batch(pyramid, batch, grid, blend));
     }
   }
-  alignas(64) std::array<Lanes<Vec4>, 3> channels;
+  alignas(64) std::array<Batch<Vec4>, 3> channels;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     const std::array<Vec4, 3> channel = channel_sums<Quads>(&sums[i * stride_]);
     for (std::size_t c = 0; c < 3; ++c) channels[c][i] = channel[c];
   }
-  Lanes<Rgb> values;
+  Batch<Rgb> values;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     values[i] = colour(sum_of(channels[0][i]), sum_of(channels[1][i]), sum_of(channels[2][i]),
                        mean[i], batch.light.z[i]);
@@ -359,17 +359,17 @@ Lanes<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
 }
 
 // Asks for their rows of the eigen map, too, which are used much later.
-Lanes<LaplacianRepresentation::Pairs> LaplacianRepresentation::pairs_of(
+Batch<LaplacianRepresentation::Pairs> LaplacianRepresentation::pairs_of(
     const QueryBatch& batch) const {
-  Lanes<Pairs> pairs;
+  Batch<Pairs> pairs;
   if (model_.interpolated) {
-    const Lanes<PairLane> found = pair_batch(view_locator_.locate(model_.head.views, batch.view),
+    const Batch<PairLane> found = pair_batch(view_locator_.locate(model_.head.views, batch.view),
                                              light_locator_.locate(model_.head.lights, batch.light),
                                              inverse_cosines_, batch.light.z);
     for (std::size_t i = 0; i < batch_lanes; ++i) pairs[i] = weighted_pairs(found[i]);
   } else {
-    const Lanes<std::int32_t> views = nearest_view_(batch.view);
-    const Lanes<std::int32_t> lights = nearest_light_(batch.light);
+    const Batch<std::int32_t> views = nearest_view_(batch.view);
+    const Batch<std::int32_t> lights = nearest_light_(batch.light);
     for (std::size_t i = 0; i < batch_lanes; ++i) {
       pairs[i].count = 1;
       pairs[i].index[0] = views[i] * model_.head.lights.size() + lights[i];

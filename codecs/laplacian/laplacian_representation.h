@@ -50,7 +50,7 @@ class LaplacianRepresentation : public Representation {
   struct Place;  // level and texels
   Pairs nearest_pair(const Direction& light, const Direction& view) const;
   Pairs weighted_pairs(const PairLane& found) const;
-  Lanes<Pairs> pairs_of(const QueryBatch& batch) const;
+  Batch<Pairs> pairs_of(const QueryBatch& batch) const;
   Place place_of(Texcoord uv, float lod) const;
   template <std::size_t Quads>
   void add_level(int level, const Blend& blend, const Pairs& pairs, float* sum) const;
@@ -59,7 +59,7 @@ class LaplacianRepresentation : public Representation {
   template <std::size_t Quads>
   void add_levels(Texcoord uv, const Place& place, const Pairs& pairs, float* sum) const;
   template <std::size_t Quads>
-  Lanes<Rgb> decode(const QueryBatch& batch) const;
+  Batch<Rgb> decode(const QueryBatch& batch) const;
   template <std::size_t Quads>
   std::array<Vec4, 3> channel_sums(const float* sum) const;
   Rgb colour(float y, float cb, float cr, float mean_y, float light_cosine) const;

@@ -116,12 +116,12 @@ void PcaRepresentation::evaluate(std::span<const AppearanceQuery> queries,
 
 // Asks for all rows before it uses the first: a table of them is larger than the nearer caches.
 template <typename Row>
-Lanes<Rgb> PcaRepresentation::decode(const QueryBatch& batch) const {
+Batch<Rgb> PcaRepresentation::decode(const QueryBatch& batch) const {
   const TexelBatch texels = texel_batch(batch, model_.head.width, model_.head.height);
-  const Lanes<PairLane> pairs = pair_batch(view_locator_.locate(model_.head.views, batch.view),
+  const Batch<PairLane> pairs = pair_batch(view_locator_.locate(model_.head.views, batch.view),
                                            light_locator_.locate(model_.head.lights, batch.light),
                                            inverse_cosines_, batch.light.z);
-  Lanes<Rgb> values;
+  Batch<Rgb> values;
   for (std::size_t i = 0; i < batch_lanes; ++i) values[i] = decode<Row>(texels.lane(i), pairs[i]);
   return values;
 }

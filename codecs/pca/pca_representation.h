@@ -37,7 +37,7 @@ class PcaRepresentation : public Representation {
 
  private:
   template <typename Row>
-  Lanes<Rgb> decode(const QueryBatch& batch) const;
+  Batch<Rgb> decode(const QueryBatch& batch) const;
   template <typename Row>
   Rgb decode(const TexelStencil& texels, const PairLane& pairs) const;
 

@@ -28,7 +28,7 @@ TEST_CASE("Sixteen stencils at once are those of one at a time") {
       const HemisphereSampling sampling(named_directions(name), horizon);
       const BatchLocator locator(sampling);
       for (std::uint64_t batch = 0; batch < 200; ++batch) {
-        Lanes<Direction> directions;
+        Batch<Direction> directions;
         for (std::uint64_t i = 0; i < batch_lanes; ++i) {
           directions[i] = from_spherical(
               std::acos(static_cast<double>(unit_float(hash_coordinates(5, batch, i, 0)))),
