@@ -2,8 +2,13 @@
 
 #include <tbb/parallel_for.h>
 
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace weft {
@@ -27,39 +32,47 @@ Cover cover(int coarse_index, int coarse_size, int fine_size) {
   return result;
 }
 
-// Weighted samples of f = B / cos over the 3 x 3 neighbours, of one texel.
-template <typename Value>
-Rgb interpolate(const Value* abrdf, std::size_t n_lights, const Stencil& view, const Stencil& light,
-                const std::array<float, 3>& light_weight) {
-  Rgb sum(0, 0, 0);
-  for (std::size_t v = 0; v < 3; ++v) {
-    if (view.weight[v] == 0) continue;
-    const Value* row = abrdf + 3 * n_lights * view.index[v];
-    for (std::size_t l = 0; l < 3; ++l) {
-      const Value* p = row + 3 * static_cast<std::size_t>(light.index[l]);
-      const float w = view.weight[v] * light_weight[l];
-      sum += Rgb(p[0], p[1], p[2]) * w;
-    }
-  }
-  return sum;
+using Float4 = float __attribute__((vector_size(16)));
+
+// Three channels of a sample, and the first of the one behind it.
+inline Float4 four_at(const float* p) {
+  Float4 values;
+  std::memcpy(&values, p, sizeof values);
+  return values;
+}
+inline Float4 four_at(const half* p) {
+#ifdef __F16C__
+  std::int64_t values;
+  std::memcpy(&values, p, sizeof values);
+  return (Float4)_mm_cvtph_ps(_mm_cvtsi64_si128(values));
+#else
+  return Float4{p[0], p[1], p[2], p[3]};
+#endif
 }
 
-Rgb evaluate_level(const Btf& btf, const Texcoord& uv, const Stencil& view, const Stencil& light,
-                   const std::array<float, 3>& light_weight) {
-  const TexelStencil texels = bilinear_texels(uv, btf.width(), btf.height());
-  const std::size_t stride = 3 * btf.views().size() * btf.lights().size();
-  Rgb sum(0, 0, 0);
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (texels.weight[i] == 0) continue;
-    const std::size_t first = texels.index[i] * stride;
-    const Rgb value = btf.pixel_type() == PixelType::half
-                          ? interpolate(btf.halfs().data() + first, btf.lights().size(), view,
-                                        light, light_weight)
-                          : interpolate(btf.floats().data() + first, btf.lights().size(), view,
-                                        light, light_weight);
-    sum += value * texels.weight[i];
+// Where the last sample of all may be among them, nothing is read behind it.
+template <bool at_end, typename Value>
+inline Rgb blended(const Value* values, std::size_t stride, const TexelStencil& texels,
+                   const SampleStencil& samples) {
+  Float4 sum{};
+  for (std::size_t t = 0; t < 4; ++t) {
+    const Value* texel = values + texels.index[t] * stride;
+    Float4 of_texel{};
+    for (std::size_t k = 0; k < 9; ++k) {
+      const Value* p = texel + samples.first[k];
+      of_texel += (at_end ? Float4{p[0], p[1], p[2], 0} : four_at(p)) * samples.weight[k];
+    }
+    sum += of_texel * texels.weight[t];
   }
-  return sum;
+  return {sum[0], sum[1], sum[2]};
+}
+
+template <typename Value>
+inline Rgb blended(std::span<const Value> values, std::size_t stride, const TexelStencil& texels,
+                   const SampleStencil& samples) {
+  return std::ranges::max(texels.index) + 1 == values.size() / stride
+             ? blended<true>(values.data(), stride, texels, samples)
+             : blended<false>(values.data(), stride, texels, samples);
 }
 
 }  // namespace
@@ -72,6 +85,26 @@ TexelStencil bilinear_texels(Texcoord uv, int width, int height) {
   return {{low + x.low, low + x.high, high + x.low, high + x.high},
           {(1 - x.blend) * (1 - y.blend), x.blend * (1 - y.blend), (1 - x.blend) * y.blend,
            x.blend * y.blend}};
+}
+
+SampleStencil sample_stencil(const Stencil& views, const Stencil& lights,
+                             std::span<const float> of_light, float factor) {
+  SampleStencil samples;
+  for (std::size_t v = 0; v < 3; ++v) {
+    for (std::size_t l = 0; l < 3; ++l) {
+      const std::size_t light = lights.index[l];
+      samples.first[3 * v + l] =
+          static_cast<std::uint32_t>(3 * (views.index[v] * of_light.size() + light));
+      samples.weight[3 * v + l] = views.weight[v] * (lights.weight[l] * of_light[light] * factor);
+    }
+  }
+  return samples;
+}
+
+Rgb blended(const Btf& level, const TexelStencil& texels, const SampleStencil& samples) {
+  const std::size_t stride = 3 * level.views().size() * level.lights().size();
+  return level.pixel_type() == PixelType::half ? blended(level.halfs(), stride, texels, samples)
+                                               : blended(level.floats(), stride, texels, samples);
 }
 
 Btf next_mip_level(const Btf& finer) {
@@ -123,22 +156,18 @@ RawAppearance::RawAppearance(std::shared_ptr<const Btf> btf)
 
 Rgb RawAppearance::evaluate(Texcoord uv, Direction light, Direction view, float lod) const {
   if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
-  const Stencil views = levels_[0]->views().locate(view);
-  const Stencil lights = levels_[0]->lights().locate(light);
-  std::array<float, 3> light_weight;
-  for (std::size_t i = 0; i < 3; ++i) {
-    light_weight[i] = lights.weight[i] * inverse_cosines_[lights.index[i]] * light.z;
-  }
+  const SampleStencil samples =
+      sample_stencil(levels_[0]->views().locate(view), levels_[0]->lights().locate(light),
+                     inverse_cosines_, light.z);
+  const auto at_level = [&](const Btf& btf) {
+    return blended(btf, bilinear_texels(uv, btf.width(), btf.height()), samples);
+  };
   const auto last = static_cast<float>(levels_.size() - 1);
   const float level = lod > 0 ? std::min(lod, last) : 0;  // a NaN is level 0
   const auto fine = static_cast<std::size_t>(level);
   const float blend = level - static_cast<float>(fine);
-  Rgb value = evaluate_level(*levels_[fine], uv, views, lights, light_weight);
-  if (blend > 0) {
-    const Rgb coarse = evaluate_level(*levels_[fine + 1], uv, views, lights, light_weight);
-    value = value * (1 - blend) + coarse * blend;
-  }
-  return value;
+  const Rgb value = at_level(*levels_[fine]);
+  return blend > 0 ? value * (1 - blend) + at_level(*levels_[fine + 1]) * blend : value;
 }
 
 }  // namespace weft

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "btf/appearance.h"
@@ -64,6 +65,20 @@ struct TexelStencil {
   std::array<float, 4> weight;
 };
 TexelStencil bilinear_texels(Texcoord uv, int width, int height);
+
+/// Which samples of a texel's ABRDF a query blends: the place of each one's red among the texel's
+/// values, and its weight.
+struct SampleStencil {
+  std::array<std::uint32_t, 9> first;
+  std::array<float, 9> weight;
+};
+/// @param of_light  what the weights of each light are multiplied by.
+/// @param factor    what all of them are multiplied by.
+SampleStencil sample_stencil(const Stencil& views, const Stencil& lights,
+                             std::span<const float> of_light, float factor);
+
+/// The sum of a level's samples at all those texels.
+Rgb blended(const Btf& level, const TexelStencil& texels, const SampleStencil& samples);
 
 /// Half as wide and high (rounded down, at least 1, as OpenGL's mip levels): each coarse texel is
 /// the area mean of the fine texels that it covers, fractions of texels included.

@@ -158,6 +158,19 @@ QueryBatch query_batch(std::span<const AppearanceQuery> queries) {
   return batch;
 }
 
+LevelBatch level_batch(const Batch<float>& lod, std::size_t n_levels) {
+  const auto last = static_cast<std::int32_t>(n_levels) - 1;
+  LevelBatch level;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    // A NaN is level 0.
+    const float asked = lod[i] > 0 ? std::min(lod[i], static_cast<float>(last)) : 0;
+    level.fine[i] = static_cast<std::int32_t>(asked);
+    level.coarse[i] = std::min(level.fine[i] + 1, last);
+    level.blend[i] = asked - static_cast<float>(level.fine[i]);
+  }
+  return level;
+}
+
 AxisBatch column_batch(const Batch<float>& u, const Batch<std::int32_t>& size) {
   alignas(64) Batch<float> place;
   for (std::size_t i = 0; i < batch_lanes; ++i)

@@ -43,6 +43,14 @@ struct QueryBatch {
 /// @param queries  one to sixteen; the last one fills the lanes beyond.
 QueryBatch query_batch(std::span<const AppearanceQuery> queries);
 
+/// Level of detail = fine + blend, of levels 0 to n - 1; `coarse` is the next one, or the last.
+struct LevelBatch {
+  alignas(64) Batch<std::int32_t> fine;
+  alignas(64) Batch<std::int32_t> coarse;
+  alignas(64) Batch<float> blend;
+};
+LevelBatch level_batch(const Batch<float>& lod, std::size_t n_levels);
+
 /// The twin of `AxisStencil`.
 struct AxisBatch {
   alignas(64) Batch<std::int32_t> low;
@@ -120,6 +128,13 @@ Batch<PairLane> pair_batch(const StencilBatch& views, const StencilBatch& lights
 /// Of one query.
 PairLane pair_lane(const Stencil& views, const Stencil& lights, std::span<const float> of_light,
                    float factor);
+
+/// Asks for every cache line of `count` values from `row` on.
+template <typename Value>
+inline void prefetch_row(const Value* row, std::size_t count) {
+  constexpr std::size_t step = 64 / sizeof(Value);
+  for (std::size_t k = 0; k < count; k += step) __builtin_prefetch(row + k);
+}
 
 /// Answers queries sixteen at a time: `decode(batch)` of type `Batch<Rgb>(const QueryBatch&)`
 /// where light and view are above the horizon, 0 elsewhere.

@@ -2,19 +2,26 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "btf/raw_appearance.h"
 #include "codecs/branchless_exp.h"
 #include "codecs/dfmf/colour.h"
+#include "codecs/wide_vector.h"
 
 namespace weft::dfmf {
 
 namespace {
 
-// Four texels side by side.
-using Vec4 = float __attribute__((vector_size(16)));
+constexpr std::size_t most_quads = 3 * 256 / 4;
 
-constexpr std::size_t most_slots = 3 * 256;
+// Four texels' sums, weighted.
+inline float blended(const Vec16& v, const std::array<float, 4>& weight) {
+  std::array<Vec4, 4> quads;
+  std::memcpy(&quads, &v, sizeof quads);
+  return sum_of((quads[0] * weight[0] + quads[2] * weight[2]) +
+                (quads[1] * weight[1] + quads[3] * weight[3]));
+}
 
 }  // namespace
 
@@ -23,57 +30,55 @@ DfmfRepresentation::DfmfRepresentation(Model model)
       view_locator_(model_.head.views),
       light_locator_(model_.head.lights),
       ones_(model_.head.lights.size(), 1.0F),
-      basis_(model_.basis) {
+      basis_(model_.basis.begin(), model_.basis.end()) {
   for (std::size_t i = 0; i < basis_.size(); ++i) basis_[i] *= model_.scale[i % model_.slots()];
 }
 
 Rgb DfmfRepresentation::decode(const TexelStencil& texels, const PairLane& neighbours) const {
   const std::size_t slots = model_.slots();
-  alignas(64) std::array<Vec4, most_slots> weights;  // one lane a texel
-  for (std::size_t t = 0; t < 4; ++t) {
-    const float* row = &model_.weights[texels.index[t] * slots];
-    for (std::size_t s = 0; s < slots; ++s) weights[s][t] = row[s];
+  std::array<Vec16, most_quads> weights;
+  std::array<const float*, 4> rows;
+  for (std::size_t t = 0; t < 4; ++t) rows[t] = &model_.weights[texels.index[t] * slots];
+  for (std::size_t s = 0; s < slots; s += 4) {
+    weights[s / 4] = joined(joined(load<Vec4>(rows[0] + s), load<Vec4>(rows[1] + s)),
+                            joined(load<Vec4>(rows[2] + s), load<Vec4>(rows[3] + s)));
   }
-  alignas(64) std::array<std::array<Vec4, 9>, 3> channel;  // a, b, c of each pair
-  alignas(64) std::array<Vec4, 9> share{};
-  const Vec4 texel_weight{texels.weight[0], texels.weight[1], texels.weight[2], texels.weight[3]};
-  std::size_t pairs = 0;
+  // a, b, c of each pair: [view][texel][light], the fourth light is none and weighs nothing
+  std::array<std::array<Vec16, 3>, 3> channel;
+  const std::array<std::size_t, 4> first_quad{0, model_.first_slot(1) / 4, model_.first_slot(2) / 4,
+                                              slots / 4};
   for (std::size_t v = 0; v < 3; ++v) {
-    for (std::size_t l = 0; l < 3; ++l) {
-      const float weight = neighbours.weight[4 * v + l];
-      const float* basis = &basis_[neighbours.index[4 * v + l] * slots];
-      std::size_t s = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        Vec4 even{};
-        Vec4 odd{};
-        for (const std::size_t end = model_.first_slot(c + 1); s < end; s += 2) {
-          even += basis[s] * weights[s];
-          odd += basis[s + 1] * weights[s + 1];
-        }
-        channel[c][pairs] = even + odd;
+    std::array<const float*, 3> basis;
+    for (std::size_t l = 0; l < 3; ++l) basis[l] = &basis_[neighbours.index[4 * v + l] * slots];
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::array<Vec16, 3> products{};
+      for (std::size_t q = first_quad[c]; q < first_quad[c + 1]; ++q) {
+        for (std::size_t l = 0; l < 3; ++l)
+          products[l] += weights[q] * four_times(basis[l] + 4 * q);
       }
-      share[pairs++] = texel_weight * weight;
+      channel[c][v] = pairwise_sums(pairwise_sums(products[0], products[1]),
+                                    pairwise_sums(products[2], Vec16{}));
     }
   }
   const float epsilon = model_.epsilon;
-  float red = 0;
-  float green = 0;
-  float blue = 0;
-  const auto* a = reinterpret_cast<const float*>(channel[0].data());
-  const auto* b = reinterpret_cast<const float*>(channel[1].data());
-  const auto* c = reinterpret_cast<const float*>(channel[2].data());
-  const auto* w = reinterpret_cast<const float*>(share.data());
-  alignas(64) std::array<float, 36> bright;  // Y + epsilon
-  for (std::size_t i = 0; i < 4 * pairs; ++i) bright[i] = epsilon * branchless_exp(a[i]);
-  for (std::size_t i = 0; i < 4 * pairs; ++i) {
-    const float y = bright[i] - epsilon;
-    const float u = b[i] * bright[i];
-    const float v = c[i] * bright[i];
-    red += w[i] * std::max(0.0F, y + red_of_v * v);
-    green += w[i] * std::max(0.0F, y - green_of_u * u - green_of_v * v);
-    blue += w[i] * std::max(0.0F, y + blue_of_u * u);
+  alignas(64) std::array<float, 48> a;
+  alignas(64) std::array<float, 48> bright;  // Y + epsilon
+  std::memcpy(&a, &channel[0], sizeof a);
+  for (std::size_t i = 0; i < 48; ++i) bright[i] = epsilon * branchless_exp(a[i]);
+  Vec16 red{};
+  Vec16 green{};
+  Vec16 blue{};
+  for (std::size_t v = 0; v < 3; ++v) {
+    const Vec16 e = load<Vec16>(&bright[16 * v]);
+    const Vec16 weight = four_times(&neighbours.weight[4 * v]);
+    const Vec16 y = e - epsilon;
+    const Vec16 b = channel[1][v] * e;
+    const Vec16 c = channel[2][v] * e;
+    red += weight * not_negative(y + red_of_v * c);
+    green += weight * not_negative(y - green_of_u * b - green_of_v * c);
+    blue += weight * not_negative(y + blue_of_u * b);
   }
-  return {red, green, blue};
+  return {blended(red, texels.weight), blended(green, texels.weight), blended(blue, texels.weight)};
 }
 
 Rgb DfmfRepresentation::evaluate(Texcoord uv, Direction light, Direction view,

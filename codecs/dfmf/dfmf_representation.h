@@ -34,8 +34,8 @@ class DfmfRepresentation : public Representation {
   Model model_;
   BatchLocator view_locator_;
   BatchLocator light_locator_;
-  std::vector<float> ones_;   // for each light
-  std::vector<float> basis_;  // [view][light][slot], times scale
+  std::vector<float> ones_;  // for each light
+  AlignedFloats basis_;      // [view][light][slot], times scale
 };
 
 }  // namespace weft::dfmf

@@ -18,36 +18,41 @@ namespace {
 
 using Byte16 = std::uint8_t __attribute__((vector_size(16)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
-using Int16 = std::int32_t __attribute__((vector_size(64)));
 
-constexpr Float16 left_weight = {1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0};
-constexpr Float16 right_minus_left = {-1, -1, -1, 1, 1, 1, 0, 0, 0, 0, -1, -1, -1, 1, 1, 1};
-constexpr Float16 upper_weight = {1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0};
-constexpr Float16 lower_minus_upper = {-1, -1, -1, -1, -1, -1, -1, -1, 1, 1, 1, 1, 1, 1, 1, 1};
+alignas(64) constexpr std::array<float, 16> left_weight{1, 1, 1, 0, 0, 0, 0, 0,
+                                                        0, 0, 1, 1, 1, 0, 0, 0};
+alignas(64) constexpr std::array<float, 16> right_minus_left{-1, -1, -1, 1,  1,  1, 0, 0,
+                                                             0,  0,  -1, -1, -1, 1, 1, 1};
+alignas(64) constexpr std::array<float, 16> upper_weight{1, 1, 1, 1, 1, 1, 1, 1,
+                                                         0, 0, 0, 0, 0, 0, 0, 0};
+alignas(64) constexpr std::array<float, 16> lower_minus_upper{-1, -1, -1, -1, -1, -1, -1, -1,
+                                                              1,  1,  1,  1,  1,  1,  1,  1};
 
 // The compiler's own conversion of vectors takes bytes apart in many steps: half of the decoder's
 // time.
-inline Float16 floats_of(const Byte16& bytes) {
+inline Vec16 floats_of(const Byte16& bytes) {
 #ifdef __AVX512F__
   // Unmasked, GCC 12 takes its own header for uninitialised (its bug 105593).
-  return __builtin_convertvector((Int16)_mm512_maskz_cvtepu8_epi32(0xFFFF, (__m128i)bytes),
-                                 Float16);
+  using Int16 = std::int32_t __attribute__((vector_size(64)));
+  return __builtin_convertvector((Int16)_mm512_maskz_cvtepu8_epi32(0xFFFF, (__m128i)bytes), Vec16);
 #elif defined(__AVX2__)
   const auto b = (__m128i)bytes;
-  const std::array<__m256, 2> halves{
-      _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(b)),
-      _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_srli_si128(b, 8)))};
-  Float16 values;
-  std::memcpy(&values, halves.data(), sizeof values);
-  return values;
+  return {(Vec8)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(b)),
+          (Vec8)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_unpackhi_epi64(b, b)))};
 #else
-  return __builtin_convertvector(__builtin_convertvector(bytes, Int16), Float16);
+  using Byte8 = std::uint8_t __attribute__((vector_size(8)));
+  std::array<Byte8, 2> halves;
+  std::memcpy(&halves, &bytes, sizeof halves);
+  const auto wide = [](const Byte8& half) {
+    return __builtin_convertvector(__builtin_convertvector(half, Int8), Vec8);
+  };
+  return {wide(halves[0]), wide(halves[1])};
 #endif
 }
 
 // Eight values from `row` on, of which six count, and eight that end with the six of the row below:
 // that way neither reads beyond the map.
-inline Float16 two_rows(const std::uint8_t* row, std::size_t row_values) {
+inline Vec16 two_rows(const std::uint8_t* row, std::size_t row_values) {
   std::array<std::uint64_t, 2> rows;
   std::memcpy(&rows[0], row, 8);
   std::memcpy(&rows[1], row + row_values - 2, 8);
@@ -55,43 +60,42 @@ inline Float16 two_rows(const std::uint8_t* row, std::size_t row_values) {
   std::memcpy(&bytes, &rows, sizeof bytes);
   return floats_of(bytes);
 }
-inline Float16 two_rows(const float* row, std::size_t row_values) {
-  std::array<Float8, 2> rows;
-  std::memcpy(&rows[0], row, sizeof rows[0]);
-  std::memcpy(&rows[1], row + row_values - 2, sizeof rows[1]);
-  Float16 values;
-  std::memcpy(&values, &rows, sizeof values);
-  return values;
+inline Vec16 two_rows(const float* row, std::size_t row_values) {
+  return joined(load<Vec8>(row), load<Vec8>(row + row_values - 2));
 }
 
-inline Float8 low8(const Float16& v) {
-  Float8 result;
-  std::memcpy(&result, &v, sizeof result);
-  return result;
-}
-inline Float4 low(const Float8& v) {
-  Float4 result;
+inline Vec4 low(const Vec8& v) {
+  Vec4 result;
   std::memcpy(&result, &v, sizeof result);
   return result;
 }
 
-template <typename Value>
-[[gnu::always_inline]] inline Float4 blended(const Value* first, std::size_t row_values,
-                                             const Float16& weight) {
-  const Float16 v = two_rows(first, row_values) * weight;
-  const Float8 rows =
-      low8(v) +
-      low8(__builtin_shuffle(v, Int16{10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+// r g b: of each the two in the upper row, from 0 on, and the two in the lower row, from 10 on.
+inline Vec4 folded(const Vec16& v) {
+#ifdef __AVX512F__
+  using Int16 = std::int32_t __attribute__((vector_size(64)));
+  const Vec8 rows = low_half(
+      v + __builtin_shuffle(v, Int16{10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+#else
+  const Vec8 rows = v.low + __builtin_shuffle(v.high, Int8{2, 3, 4, 5, 6, 7, 0, 1});
+#endif
   return low(rows + __builtin_shuffle(rows, Int8{3, 4, 5, 6, 7, 0, 1, 2}));
 }
 
 template <typename Value>
-inline Float4 looked_up(const Value* map, std::size_t row_values, const MapPlace& place) {
+[[gnu::always_inline]] inline Vec4 blended(const Value* first, std::size_t row_values,
+                                           const Vec16& weight) {
+  return folded(two_rows(first, row_values) * weight);
+}
+
+template <typename Value>
+inline Vec4 looked_up(const Value* map, std::size_t row_values, const MapPlace& place) {
   return blended(map + place.first, row_values, place.weight);
 }
 
-inline Float16 blend_weights(float across, float down) {
-  return (left_weight + across * right_minus_left) * (upper_weight + down * lower_minus_upper);
+inline Vec16 blend_weights(float across, float down) {
+  return (load<Vec16>(left_weight.data()) + across * load<Vec16>(right_minus_left.data())) *
+         (load<Vec16>(upper_weight.data()) + down * load<Vec16>(lower_minus_upper.data()));
 }
 
 inline MapPlace map_place(int first, float across, float down) {
@@ -152,7 +156,7 @@ Decoder::Decoder(const Model& model) : model_(model), map_values_(model.values_a
   texels_.resize(model.texels());
   for (std::size_t t = 0; t < texels_.size(); ++t) {
     const Rgb scale = (model.scale.size() > 0 ? model.scale_of(t) : Rgb(1, 1, 1)) * unit;
-    texels_[t].scale = Float4{scale.x, scale.y, scale.z, 0};
+    texels_[t].scale = Vec4{scale.x, scale.y, scale.z, 0};
     for (std::size_t f = 0; f < model.factors.size(); ++f) {
       texels_[t].map[f] = static_cast<std::uint32_t>(model.map_of(f, t));
     }
@@ -160,8 +164,8 @@ Decoder::Decoder(const Model& model) : model_(model), map_values_(model.values_a
 }
 
 template <typename Value>
-[[gnu::always_inline]] inline Float4 Decoder::product(const Value* const* maps, const Texel& texel,
-                                                      const MapPlaces& places) const {
+[[gnu::always_inline]] inline Vec4 Decoder::product(const Value* const* maps, const Texel& texel,
+                                                    const MapPlaces& places) const {
   const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
   const auto own = [&](std::size_t f) {
     return looked_up(maps[f] + texel.map[f] * map_values_, row_values, places[f]);
@@ -171,20 +175,20 @@ template <typename Value>
 }
 
 template <typename Value>
-Float4 Decoder::product_of_links(const Value* const* maps, const Texel& texel,
-                                 const MapPlaces& places) const {
+Vec4 Decoder::product_of_links(const Value* const* maps, const Texel& texel,
+                               const MapPlaces& places) const {
   const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
-  Float4 result = texel.scale;
+  Vec4 result = texel.scale;
   if (single_terms_) {
     for (std::size_t f = 0; f < model_.factors.size(); ++f)
       result *= looked_up(maps[f] + texel.map[f] * map_values_, row_values, places[f]);
     return result;
   }
   for (int link = 0; link < link_count; ++link) {
-    Float4 sum = {};
+    Vec4 sum = {};
     bool present = false;
     for (int term = 0;; ++term) {
-      Float4 one = {1, 1, 1, 1};
+      Vec4 one = {1, 1, 1, 1};
       bool has_term = false;
       for (std::size_t f = 0; f < model_.factors.size(); ++f) {
         const Factor& factor = model_.factors[f];
@@ -198,20 +202,20 @@ Float4 Decoder::product_of_links(const Value* const* maps, const Texel& texel,
       sum += one;
     }
     if (!present) continue;
-    const Float4 zero = {};
+    const Vec4 zero = {};
     result *= sum < zero ? zero : sum;
   }
   return result;
 }
 
-[[gnu::always_inline]] inline Float4 Decoder::value4(std::size_t texel,
-                                                     const MapPlaces& places) const {
+[[gnu::always_inline]] inline Vec4 Decoder::value4(std::size_t texel,
+                                                   const MapPlaces& places) const {
   return bytes_[0] != nullptr ? product(bytes_.data(), texels_[texel], places)
                               : product(floats_.data(), texels_[texel], places);
 }
 
 Rgb Decoder::value(std::size_t texel, const MapPlaces& places) const {
-  const Float4 v = value4(texel, places);
+  const Vec4 v = value4(texel, places);
   return {v[0], v[1], v[2]};
 }
 
@@ -253,13 +257,13 @@ MapPlaces Decoder::places(const Direction& light_asked, const Direction& view_as
 Rgb Decoder::level_value(const Level& level, const Texcoord& uv, const Direction& light,
                          const Direction& view, const MapPlaces& places) const {
   const TexelStencil texels = bilinear_texels(uv, level.width, level.height);
-  Float4 sum = {};
+  Vec4 sum = {};
   for (std::size_t t = 0; t < 4; ++t) {
     if (texels.weight[t] == 0) continue;
     const std::size_t texel = level.first + texels.index[t];
-    const Float4 value = model_.rotation.empty()
-                             ? value4(texel, places)
-                             : value4(texel, this->places(light, view, model_.rotation[texel]));
+    const Vec4 value = model_.rotation.empty()
+                           ? value4(texel, places)
+                           : value4(texel, this->places(light, view, model_.rotation[texel]));
     sum += value * texels.weight[t];
   }
   return Rgb(sum[0], sum[1], sum[2]) * light.z;
@@ -367,7 +371,7 @@ std::array<PlaceLanes, max_factors> Decoder::places(const QueryBatch& batch) con
   return places;
 }
 
-// The four texels around uv at levels `fine`, weights times `share`.
+// The four texels around uv at each lane's level, weights times `share`.
 TexelBatch Decoder::level_texels(const QueryBatch& batch, const Batch<std::int32_t>& levels,
                                  const Batch<float>& share) const {
   Batch<std::int32_t> width;
@@ -387,23 +391,14 @@ TexelBatch Decoder::level_texels(const QueryBatch& batch, const Batch<std::int32
 }
 
 Batch<Rgb> Decoder::decode(const QueryBatch& batch) const {
-  const auto last = static_cast<float>(model_.levels.size() - 1);
-  Batch<std::int32_t> level;
-  alignas(64) Batch<float> blend;
+  const LevelBatch level = level_batch(batch.lod, model_.levels.size());
   alignas(64) Batch<float> rest;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    const float lod = batch.lod[i] > 0 ? std::min(batch.lod[i], last) : 0;  // a NaN is level 0
-    level[i] = static_cast<std::int32_t>(lod);
-    blend[i] = lod - static_cast<float>(level[i]);
-    rest[i] = 1 - blend[i];
-  }
+  for (std::size_t i = 0; i < batch_lanes; ++i) rest[i] = 1 - level.blend[i];
   const std::array<PlaceLanes, max_factors> places = this->places(batch);
-  Batch<Float4> sums{};
-  add_level(level_texels(batch, level, rest), places, sums);
-  if (std::ranges::max(blend) > 0) {
-    for (std::int32_t& k : level) k = std::min(k + 1, static_cast<std::int32_t>(last));
-    add_level(level_texels(batch, level, blend), places, sums);
-  }
+  Batch<Vec4> sums{};
+  add_level(level_texels(batch, level.fine, rest), places, sums);
+  if (std::ranges::max(level.blend) > 0)
+    add_level(level_texels(batch, level.coarse, level.blend), places, sums);
   Batch<Rgb> values;
   for (std::size_t i = 0; i < batch_lanes; ++i)
     values[i] = Rgb(sums[i][0], sums[i][1], sums[i][2]) * batch.light.z[i];
@@ -411,7 +406,7 @@ Batch<Rgb> Decoder::decode(const QueryBatch& batch) const {
 }
 
 void Decoder::add_level(const TexelBatch& texels, const std::array<PlaceLanes, max_factors>& places,
-                        Batch<Float4>& sums) const {
+                        Batch<Vec4>& sums) const {
   if (plain_) {
     return bytes_[0] != nullptr ? add_plain(bytes_.data(), texels, places, sums)
                                 : add_plain(floats_.data(), texels, places, sums);
@@ -430,7 +425,7 @@ void Decoder::add_level(const TexelBatch& texels, const std::array<PlaceLanes, m
 template <typename Value>
 void Decoder::add_plain(const Value* const* maps, const TexelBatch& texels,
                         const std::array<PlaceLanes, max_factors>& places,
-                        Batch<Float4>& sums) const {
+                        Batch<Vec4>& sums) const {
   const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
   std::array<std::array<std::array<const Value*, 3>, 4>, batch_lanes> first;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
@@ -444,10 +439,10 @@ void Decoder::add_plain(const Value* const* maps, const TexelBatch& texels,
     }
   }
   for (std::size_t i = 0; i < batch_lanes; ++i) {
-    std::array<Float16, 3> weight;
+    std::array<Vec16, 3> weight;
     for (std::size_t f = 0; f < 3; ++f)
       weight[f] = blend_weights(places[f].across[i], places[f].down[i]);
-    Float4 sum = sums[i];
+    Vec4 sum = sums[i];
     for (std::size_t t = 0; t < 4; ++t) {
       sum += texels_[texels.index[t][i]].scale * texels.weight[t][i] *
              blended(first[i][t][0], row_values, weight[0]) *

@@ -14,17 +14,14 @@
 #include "btf/appearance.h"
 #include "codecs/factor_maps/model.h"
 #include "codecs/stencil_batch.h"
+#include "codecs/wide_vector.h"
 
 namespace weft::factor_maps {
-
-using Float4 = float __attribute__((vector_size(16)));
-using Float8 = float __attribute__((vector_size(32)));
-using Float16 = float __attribute__((vector_size(64)));
 
 /// Where a direction lies in a map: the upper left of its four texels, and how they blend.
 struct MapPlace {
   std::uint32_t first;  ///< of the map's values, that texel's red
-  Float16 weight;       ///< of r g b r g b and two unused values from `first` on, and of two unused
+  Vec16 weight;         ///< of r g b r g b and two unused values from `first` on, and of two unused
                         ///< ones and r g b r g b of the row below
 };
 /// Only those of the model's factors are set.
@@ -53,25 +50,25 @@ class Decoder {
  private:
   /// What a texel knows: its maps, and its scale with the bytes' 1 / 255 in it.
   struct Texel {
-    Float4 scale;
+    Vec4 scale;
     std::array<std::uint32_t, max_factors> map;
   };
   template <typename Value>
-  Float4 product(const Value* const* maps, const Texel& texel, const MapPlaces& places) const;
+  Vec4 product(const Value* const* maps, const Texel& texel, const MapPlaces& places) const;
   template <typename Value>
-  Float4 product_of_links(const Value* const* maps, const Texel& texel,
-                          const MapPlaces& places) const;
-  Float4 value4(std::size_t texel, const MapPlaces& places) const;
+  Vec4 product_of_links(const Value* const* maps, const Texel& texel,
+                        const MapPlaces& places) const;
+  Vec4 value4(std::size_t texel, const MapPlaces& places) const;
   Rgb level_value(const Level& level, const Texcoord& uv, const Direction& light,
                   const Direction& view, const MapPlaces& places) const;
   std::array<PlaceLanes, max_factors> places(const QueryBatch& batch) const;
   TexelBatch level_texels(const QueryBatch& batch, const Batch<std::int32_t>& levels,
                           const Batch<float>& share) const;
   void add_level(const TexelBatch& texels, const std::array<PlaceLanes, max_factors>& places,
-                 Batch<Float4>& sums) const;
+                 Batch<Vec4>& sums) const;
   template <typename Value>
   void add_plain(const Value* const* maps, const TexelBatch& texels,
-                 const std::array<PlaceLanes, max_factors>& places, Batch<Float4>& sums) const;
+                 const std::array<PlaceLanes, max_factors>& places, Batch<Vec4>& sums) const;
   Batch<Rgb> decode(const QueryBatch& batch) const;
 
   const Model& model_;

@@ -15,20 +15,6 @@ namespace {
 
 constexpr std::size_t most_slots = 96;
 
-// Sixteen slots side by side.
-using Vec16 = float __attribute__((vector_size(64)));
-
-template <typename Lanes>
-Lanes load(const float* p) {
-  Lanes v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-
-inline float sum_of(const Vec4& v) {
-  return (v[0] + v[2]) + (v[1] + v[3]);
-}
-
 // lambda of section 3.4, step 2.
 float level_of(float lod, int top) {
   return lod > 0 ? std::min(lod, static_cast<float>(top)) : 0;  // a NaN is level 0
@@ -102,12 +88,12 @@ TexelBatch box_texels(const Pyramid& pyramid, const BoxBatch& boxes, int level) 
   return texels;
 }
 
-TexelBatch linear_texels(const Pyramid& pyramid, const QueryBatch& batch,
-                         const Batch<std::int32_t>& grid, const Batch<float>& blend, int level) {
+TexelBatch linear_texels(const Pyramid& pyramid, const QueryBatch& batch, const LevelBatch& lambda,
+                         int level) {
   TexelBatch texels = texel_batch(batch, pyramid.width_of(level), pyramid.height_of(level));
   for (Batch<float>& weight : texels.weight) {
     for (std::size_t i = 0; i < batch_lanes; ++i)  // w_k
-      weight[i] *= level < grid[i] ? 0 : level == grid[i] ? 1 - blend[i] : 1;
+      weight[i] *= level < lambda.fine[i] ? 0 : level == lambda.fine[i] ? 1 - lambda.blend[i] : 1;
   }
   return texels;
 }
@@ -210,8 +196,7 @@ template <std::size_t Quads>
     RowLanes e = load<RowLanes>(eigen + pairs.index[0] * stride + s) * pairs.weight[0];
     for (std::size_t i = 1; i < pairs.count; ++i)
       e += load<RowLanes>(eigen + pairs.index[i] * stride + s) * pairs.weight[i];
-    const RowLanes total = load<RowLanes>(sum + s) + d * e;
-    __builtin_memcpy(sum + s, &total, sizeof total);
+    add_to(sum + s, d * e);
   }
 }
 
@@ -312,13 +297,7 @@ Batch<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
   alignas(64) std::array<float, batch_lanes*(Quads == 3 ? 16 : most_slots)> sums;
   std::fill_n(sums.begin(), batch_lanes * stride_, 0.0F);
   const Pyramid& pyramid = model_.pyramid;
-  Batch<std::int32_t> grid;
-  Batch<float> blend;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    const float lambda = level_of(batch.lod[i], pyramid.top);
-    grid[i] = static_cast<std::int32_t>(lambda);
-    blend[i] = lambda - static_cast<float>(grid[i]);
-  }
+  const LevelBatch lambda = level_batch(batch.lod, static_cast<std::size_t>(model_.levels()));
   const auto add = [&](int level, const TexelBatch& texels) {
     for (std::size_t i = 0; i < batch_lanes; ++i) {
       Blend rows;
@@ -330,20 +309,18 @@ Batch<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
     }
   };
   if (pyramid.filters == Filters::linear) {
-    for (int level = std::ranges::min(grid); level <= pyramid.top; ++level)
-      add(level, linear_texels(pyramid, batch, grid, blend, level));
+    for (int level = std::ranges::min(lambda.fine); level <= pyramid.top; ++level)
+      add(level, linear_texels(pyramid, batch, lambda, level));
   } else {
     const auto add_boxes = [&](const BoxBatch& boxes) {
       for (int level = std::ranges::min(boxes.grid); level <= pyramid.top; ++level)
         add(level, box_texels(pyramid, boxes, level));
     };
     alignas(64) Batch<float> rest;
-    for (std::size_t i = 0; i < batch_lanes; ++i) rest[i] = 1 - blend[i];
-    add_boxes(box_batch(pyramid, batch, grid, rest));
-    if (std::ranges::max(blend) > 0) {
-      for (std::int32_t& g : grid) g = std::min(g + 1, pyramid.top);
-      add_boxes(box_batch(pyramid, batch, grid, blend));
-    }
+    for (std::size_t i = 0; i < batch_lanes; ++i) rest[i] = 1 - lambda.blend[i];
+    add_boxes(box_batch(pyramid, batch, lambda.fine, rest));
+    if (std::ranges::max(lambda.blend) > 0)
+      add_boxes(box_batch(pyramid, batch, lambda.coarse, lambda.blend));
   }
   alignas(64) std::array<Batch<Vec4>, 3> channels;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
@@ -378,10 +355,8 @@ Batch<LaplacianRepresentation::Pairs> LaplacianRepresentation::pairs_of(
   }
   const std::size_t stride = model_.levels() * stride_;
   for (const Pairs& of_lane : pairs) {
-    for (std::size_t k = 0; k < of_lane.count; ++k) {
-      for (std::size_t s = 0; s < stride; s += 16)
-        __builtin_prefetch(&eigen_[of_lane.index[k] * stride + s]);
-    }
+    for (std::size_t k = 0; k < of_lane.count; ++k)
+      prefetch_row(&eigen_[of_lane.index[k] * stride], stride);
   }
   return pairs;
 }

@@ -7,11 +7,9 @@
 #include "codecs/nearest_table.h"
 #include "codecs/representation.h"
 #include "codecs/stencil_batch.h"
+#include "codecs/wide_vector.h"
 
 namespace weft::laplacian {
-
-/// Four slots side by side.
-using Vec4 = float __attribute__((vector_size(16)));
 
 /// Columns and rows of the four texels around uv.
 struct Corners {

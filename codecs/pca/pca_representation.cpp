@@ -3,32 +3,11 @@
 #include <algorithm>
 #include <array>
 
+#include "codecs/wide_vector.h"
+
 namespace weft::pca {
 
 namespace {
-
-// Components side by side: sixteen, or eight where there are no more.
-using Vec16 = float __attribute__((vector_size(64)));
-using Vec8 = float __attribute__((vector_size(32)));
-using Vec4 = float __attribute__((vector_size(16)));
-
-template <typename Lanes>
-Lanes load(const float* p) {
-  Lanes v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-float sum_of(Vec8 v) {
-  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
-}
-
-float sum_of(Vec16 v) {
-  Vec8 low;
-  Vec8 high;
-  __builtin_memcpy(&low, &v, sizeof low);
-  __builtin_memcpy(&high, reinterpret_cast<const char*>(&v) + sizeof low, sizeof high);
-  return sum_of(low + high);
-}
 
 std::size_t whole_lanes(std::size_t n) {
   return n <= 8 ? 8 : (n + 15) / 16 * 16;
@@ -114,7 +93,6 @@ void PcaRepresentation::evaluate(std::span<const AppearanceQuery> queries,
   });
 }
 
-// Asks for all rows before it uses the first: a table of them is larger than the nearer caches.
 template <typename Row>
 Batch<Rgb> PcaRepresentation::decode(const QueryBatch& batch) const {
   const TexelBatch texels = texel_batch(batch, model_.head.width, model_.head.height);

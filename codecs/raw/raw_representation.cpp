@@ -139,10 +139,80 @@ vec3 btf_evaluate(vec2 uv, vec3 light, vec3 view, float lod) {
 }
 )";
 
+SampleStencil samples_of(const PairLane& pairs) {
+  SampleStencil samples;
+  for (std::size_t v = 0; v < 3; ++v) {
+    for (std::size_t l = 0; l < 3; ++l) {
+      samples.first[3 * v + l] = static_cast<std::uint32_t>(3 * pairs.index[4 * v + l]);
+      samples.weight[3 * v + l] = pairs.weight[4 * v + l];
+    }
+  }
+  return samples;
+}
+
+void prefetch(const Btf& level, const TexelStencil& texels, const SampleStencil& samples) {
+  const std::size_t stride = 3 * level.views().size() * level.lights().size();
+  const auto ask = [&](const auto* values) {
+    for (const std::uint32_t texel : texels.index) {
+      for (const std::uint32_t first : samples.first)
+        __builtin_prefetch(values + texel * stride + first);
+    }
+  };
+  if (level.pixel_type() == PixelType::half)
+    ask(level.halfs().data());
+  else
+    ask(level.floats().data());
+}
+
+// Asks for all samples before it uses the first: they lie far apart in what no cache holds.
+Batch<Rgb> blended_in_batch(const std::vector<std::shared_ptr<const Btf>>& levels,
+                            const Batch<std::int32_t>& level, const QueryBatch& batch,
+                            const Batch<SampleStencil>& samples) {
+  Batch<std::int32_t> width;
+  Batch<std::int32_t> height;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    width[i] = levels[level[i]]->width();
+    height[i] = levels[level[i]]->height();
+  }
+  const TexelBatch texels =
+      texel_batch(column_batch(batch.u, width), row_batch(batch.v, height), width);
+  for (std::size_t i = 0; i < batch_lanes; ++i)
+    prefetch(*levels[level[i]], texels.lane(i), samples[i]);
+  Batch<Rgb> values;
+  for (std::size_t i = 0; i < batch_lanes; ++i)
+    values[i] = blended(*levels[level[i]], texels.lane(i), samples[i]);
+  return values;
+}
+
 }  // namespace
 
 RawRepresentation::RawRepresentation(std::shared_ptr<const Btf> btf)
-    : appearance_(std::move(btf)) {}
+    : appearance_(std::move(btf)),
+      view_locator_(views()),
+      light_locator_(lights()),
+      inverse_cosines_(inverse_cosines(lights())) {}
+
+void RawRepresentation::evaluate(std::span<const AppearanceQuery> queries,
+                                 std::span<Rgb> answers) const {
+  decode_in_batches(queries, answers, [this](const QueryBatch& batch) { return decode(batch); });
+}
+
+Batch<Rgb> RawRepresentation::decode(const QueryBatch& batch) const {
+  const Batch<PairLane> pairs =
+      pair_batch(view_locator_.locate(views(), batch.view),
+                 light_locator_.locate(lights(), batch.light), inverse_cosines_, batch.light.z);
+  Batch<SampleStencil> samples;
+  for (std::size_t i = 0; i < batch_lanes; ++i) samples[i] = samples_of(pairs[i]);
+  const auto& levels = appearance_.levels();
+  const LevelBatch level = level_batch(batch.lod, levels.size());
+  const Batch<Rgb> fine = blended_in_batch(levels, level.fine, batch, samples);
+  if (std::ranges::max(level.blend) == 0) return fine;
+  const Batch<Rgb> coarse = blended_in_batch(levels, level.coarse, batch, samples);
+  Batch<Rgb> values;
+  for (std::size_t i = 0; i < batch_lanes; ++i)
+    values[i] = fine[i] * (1 - level.blend[i]) + coarse[i] * level.blend[i];
+  return values;
+}
 
 std::size_t raw_texture_bytes(int width, int height, std::size_t pairs, PixelType type) {
   const std::size_t samples = sample_count(width, height, pairs);

@@ -4,6 +4,7 @@
 
 #include "btf/raw_appearance.h"
 #include "codecs/representation.h"
+#include "codecs/stencil_batch.h"
 
 namespace weft {
 
@@ -18,9 +19,7 @@ class RawRepresentation : public Representation {
   Rgb evaluate(Texcoord uv, Direction light, Direction view, float lod) const override {
     return appearance_.evaluate(uv, light, view, lod);
   }
-  void evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const override {
-    appearance_.evaluate(queries, answers);
-  }
+  void evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const override;
   bool has_lod() const override { return appearance_.has_lod(); }
   Imath::V2i texels() const override { return appearance_.texels(); }
 
@@ -38,7 +37,12 @@ class RawRepresentation : public Representation {
   const Btf& btf() const { return *appearance_.levels()[0]; }
 
  private:
+  Batch<Rgb> decode(const QueryBatch& batch) const;
+
   RawAppearance appearance_;
+  BatchLocator view_locator_;
+  BatchLocator light_locator_;
+  std::vector<float> inverse_cosines_;  // of the lights
 };
 
 }  // namespace weft
