@@ -129,13 +129,6 @@ Batch<PairLane> pair_batch(const StencilBatch& views, const StencilBatch& lights
 PairLane pair_lane(const Stencil& views, const Stencil& lights, std::span<const float> of_light,
                    float factor);
 
-/// Asks for every cache line of `count` values from `row` on.
-template <typename Value>
-inline void prefetch_row(const Value* row, std::size_t count) {
-  constexpr std::size_t step = 64 / sizeof(Value);
-  for (std::size_t k = 0; k < count; k += step) __builtin_prefetch(row + k);
-}
-
 /// Answers queries sixteen at a time: `decode(batch)` of type `Batch<Rgb>(const QueryBatch&)`
 /// where light and view are above the horizon, 0 elsewhere.
 template <typename Decode>

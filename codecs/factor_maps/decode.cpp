@@ -420,34 +420,24 @@ void Decoder::add_level(const TexelBatch& texels, const std::array<PlaceLanes, m
   }
 }
 
-// Asks for all rows of the maps before it uses the first: the maps are larger than the nearer
-// caches.
 template <typename Value>
 void Decoder::add_plain(const Value* const* maps, const TexelBatch& texels,
                         const std::array<PlaceLanes, max_factors>& places,
                         Batch<Vec4>& sums) const {
   const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
-  std::array<std::array<std::array<const Value*, 3>, 4>, batch_lanes> first;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    for (std::size_t t = 0; t < 4; ++t) {
-      const Texel& texel = texels_[texels.index[t][i]];
-      for (std::size_t f = 0; f < 3; ++f) {
-        first[i][t][f] = maps[f] + texel.map[f] * map_values_ + places[f].first[i];
-        __builtin_prefetch(first[i][t][f]);
-        __builtin_prefetch(first[i][t][f] + row_values);
-      }
-    }
-  }
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     std::array<Vec16, 3> weight;
     for (std::size_t f = 0; f < 3; ++f)
       weight[f] = blend_weights(places[f].across[i], places[f].down[i]);
     Vec4 sum = sums[i];
     for (std::size_t t = 0; t < 4; ++t) {
-      sum += texels_[texels.index[t][i]].scale * texels.weight[t][i] *
-             blended(first[i][t][0], row_values, weight[0]) *
-             blended(first[i][t][1], row_values, weight[1]) *
-             blended(first[i][t][2], row_values, weight[2]);
+      const Texel& texel = texels_[texels.index[t][i]];
+      Vec4 product = texel.scale * texels.weight[t][i];
+      for (std::size_t f = 0; f < 3; ++f) {
+        product *= blended(maps[f] + texel.map[f] * map_values_ + places[f].first[i], row_values,
+                           weight[f]);
+      }
+      sum += product;
     }
     sums[i] = sum;
   }

@@ -335,7 +335,6 @@ Batch<Rgb> LaplacianRepresentation::decode(const QueryBatch& batch) const {
   return values;
 }
 
-// Asks for their rows of the eigen map, too, which are used much later.
 Batch<LaplacianRepresentation::Pairs> LaplacianRepresentation::pairs_of(
     const QueryBatch& batch) const {
   Batch<Pairs> pairs;
@@ -352,11 +351,6 @@ Batch<LaplacianRepresentation::Pairs> LaplacianRepresentation::pairs_of(
       pairs[i].index[0] = views[i] * model_.head.lights.size() + lights[i];
       pairs[i].weight[0] = 1;
     }
-  }
-  const std::size_t stride = model_.levels() * stride_;
-  for (const Pairs& of_lane : pairs) {
-    for (std::size_t k = 0; k < of_lane.count; ++k)
-      prefetch_row(&eigen_[of_lane.index[k] * stride], stride);
   }
   return pairs;
 }
