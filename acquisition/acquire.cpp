@@ -3,13 +3,11 @@
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -18,6 +16,7 @@
 #include "acquisition/path_block.h"
 #include "btf/btf_file.h"
 #include "btf/error.h"
+#include "btf/process_memory.h"
 #include "btf/random.h"
 
 namespace weft {
@@ -76,15 +75,6 @@ std::string provenance_of(const Mesostructure& mesostructure, const AcquisitionS
 }
 
 namespace {
-
-// What the process holds in memory now, from Linux' /proc; 0 where that cannot be read.
-std::size_t resident_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::size_t pages = 0;
-  std::size_t resident = 0;
-  statm >> pages >> resident;
-  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
 
 // How many views fit into the memory that is left once the structure is there.
 std::size_t views_at_once(const AcquisitionSettings& settings, std::size_t lights) {

@@ -10,6 +10,8 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <memory>
+#include <new>
 #include <regex>
 #include <sstream>
 #include <system_error>
@@ -157,26 +159,52 @@ void remove_abandoned(const fs::path& folder) {
   for (const fs::path& path : abandoned) fs::remove(path, ignored);
 }
 
-std::string read_text(const fs::path& path) {
+namespace {
+
+std::ifstream opened(const fs::path& path) {
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in || fs::is_directory(path)) {
     throw bad_input(path.string(),
                     "cannot be read: " + (errno != 0 ? reason(errno) : "not a file"));
   }
+  return in;
+}
+
+}  // namespace
+
+std::string read_text(const fs::path& path) {
+  const std::ifstream in = opened(path);
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
 }
 
-std::string checksum(std::span<const std::byte> bytes) {
-  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+namespace {
+
+std::string hexadecimal(const XXH128_hash_t& hash) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+}  // namespace
+
+std::string checksum(std::span<const std::byte> bytes) {
+  return hexadecimal(XXH3_128bits(bytes.data(), bytes.size()));
+}
+
 std::string file_checksum(const fs::path& path) {
-  const std::string bytes = read_text(path);
-  return checksum(std::as_bytes(std::span(bytes)));
+  constexpr std::size_t block = std::size_t{1} << 20;
+  std::ifstream in = opened(path);
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(),
+                                                                       &XXH3_freeState);
+  if (!state) throw std::bad_alloc();
+  XXH3_128bits_reset(state.get());
+  std::vector<char> bytes(block);
+  do {
+    in.read(bytes.data(), static_cast<std::streamsize>(block));
+    XXH3_128bits_update(state.get(), bytes.data(), static_cast<std::size_t>(in.gcount()));
+  } while (in);
+  return hexadecimal(XXH3_128bits_digest(state.get()));
 }
 
 }  // namespace weft

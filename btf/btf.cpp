@@ -1,6 +1,7 @@
 #include "btf/btf.h"
 
 #include <fmt/core.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,21 +26,23 @@ std::string sample_name(std::size_t index, std::size_t view, int width, int heig
 
 }  // namespace
 
-Btf::Btf(int width, int height, HemisphereSampling views, HemisphereSampling lights, PixelType type)
+Btf::Btf(int width, int height, HemisphereSampling views, HemisphereSampling lights, PixelType type,
+         std::shared_ptr<MemoryBudget> memory)
     : width_(width),
       height_(height),
       views_(std::move(views)),
       lights_(std::move(lights)),
-      type_(type) {
+      type_(type),
+      memory_(std::move(memory)) {
   if (width < 1 || height < 1) {
     throw bad_input("texels", fmt::format("{} x {}; expected at least 1 x 1", width, height));
   }
   const std::size_t count =
       3 * static_cast<std::size_t>(width) * height * views_.size() * lights_.size();
   if (type == PixelType::half)
-    halfs_.resize(count);
+    halfs_ = LargeArray<half>(count, memory_);
   else
-    floats_.resize(count);
+    floats_ = LargeArray<float>(count, memory_);
 }
 
 Rgb Btf::at(std::size_t light, std::size_t view, int x, int y) const {
@@ -91,11 +94,66 @@ std::vector<float> Btf::view_values(std::size_t view) const {
 
 void Btf::abrdf(int x, int y, std::span<float> values) const {
   const std::size_t first = offset(0, 0, x, y);
-  if (type_ == PixelType::half) {
-    std::copy_n(halfs_.begin() + static_cast<std::ptrdiff_t>(first), values.size(), values.begin());
-  } else {
-    std::copy_n(floats_.begin() + static_cast<std::ptrdiff_t>(first), values.size(),
-                values.begin());
+  if (type_ == PixelType::half)
+    std::copy_n(halfs_.data() + first, values.size(), values.begin());
+  else
+    std::copy_n(floats_.data() + first, values.size(), values.begin());
+}
+
+std::size_t Btf::views_at_once() const {
+  if (!memory_) return views_.size();
+  // The other half is for what is made of them.
+  const std::size_t fit = memory_->left() / 2 / (bytes() / views_.size());
+  return std::clamp<std::size_t>(fit, 1, views_.size());
+}
+
+Btf Btf::blank_views(std::size_t first, std::size_t count) const {
+  const auto some = views_.directions().subspan(first, count);
+  return {width_, height_, HemisphereSampling({some.begin(), some.end()}), lights_, type_, memory_};
+}
+
+namespace {
+
+// The views of `part` are those of `whole` from one on; `first` is that one's offset in an ABRDF.
+template <typename Part, typename Whole, typename Copy>
+void each_texel_of(std::size_t texels, Part part, Whole whole, std::size_t first,
+                   const Copy& copy) {
+  const std::size_t some = part.size() / texels;
+  const std::size_t all = whole.size() / texels;
+  tbb::parallel_for(std::size_t{0}, texels, [&](std::size_t texel) {
+    copy(part.subspan(texel * some, some), whole.subspan(texel * all + first, some));
+  });
+}
+
+}  // namespace
+
+Btf Btf::some_views(std::size_t first, std::size_t count) const {
+  Btf part = blank_views(first, count);
+  const auto copy = [](auto some, auto all) { std::ranges::copy(all, some.begin()); };
+  const std::size_t texels = static_cast<std::size_t>(width_) * height_;
+  if (type_ == PixelType::half)
+    each_texel_of(texels, part.halfs_.values(), halfs(), offset(0, first, 0, 0), copy);
+  else
+    each_texel_of(texels, part.floats_.values(), floats(), offset(0, first, 0, 0), copy);
+  return part;
+}
+
+void Btf::set_views(std::size_t first, const Btf& part) {
+  const auto copy = [](auto some, auto all) { std::ranges::copy(some, all.begin()); };
+  const std::size_t texels = static_cast<std::size_t>(width_) * height_;
+  if (type_ == PixelType::half)
+    each_texel_of(texels, part.halfs(), halfs_.values(), offset(0, first, 0, 0), copy);
+  else
+    each_texel_of(texels, part.floats(), floats_.values(), offset(0, first, 0, 0), copy);
+}
+
+void for_some_views(const Btf& btf,
+                    const std::function<void(std::size_t first, const Btf& part)>& use) {
+  if (!btf.mapped()) return use(0, btf);
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < btf.views().size(); first += count) {
+    count = std::min(btf.views_at_once(), btf.views().size() - first);
+    use(first, btf.some_views(first, count));
   }
 }
 

@@ -1,13 +1,15 @@
-// A raw bidirectional texture function in memory: B(texel, light, view) for every pair of two
-// samplings.
+// A raw bidirectional texture function: B(texel, light, view) for every pair of two samplings.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "btf/hemisphere_sampling.h"
+#include "btf/large_array.h"
 
 namespace weft {
 
@@ -17,11 +19,15 @@ enum class PixelType { half, float32 };
 /// W x H texels x views x lights of RGB, in half or float. Row 0 is the top (v near 1).
 ///
 /// Values lie ABRDF by ABRDF: [y][x][view][light][rgb], so that the few neighbours that an
-/// interpolation asks for are close to each other.
+/// interpolation asks for are close to each other. They are in memory, or in a scratch file where a
+/// budget is exceeded: whoever reads them all then does so texel by texel.
 class Btf {
  public:
-  /// All values zero. @throws Error for a size of zero.
-  Btf(int width, int height, HemisphereSampling views, HemisphereSampling lights, PixelType type);
+  /// All values zero.
+  /// @param memory  what they may take; without it as much as there is.
+  /// @throws Error  for a size of zero, or where there is no room for the scratch file.
+  Btf(int width, int height, HemisphereSampling views, HemisphereSampling lights, PixelType type,
+      std::shared_ptr<MemoryBudget> memory = nullptr);
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -38,6 +44,15 @@ class Btf {
   void set_view(std::size_t view, std::span<const float> values);
   std::vector<float> view_values(std::size_t view) const;
 
+  /// How many views next to each other memory allows to hold beside the data, at least 1.
+  std::size_t views_at_once() const;
+  /// `count` views from `first` on as a BTF of their own, all values zero.
+  Btf blank_views(std::size_t first, std::size_t count) const;
+  /// The same with their values; one pass over the data.
+  Btf some_views(std::size_t first, std::size_t count) const;
+  /// The reverse of `some_views`.
+  void set_views(std::size_t first, const Btf& part);
+
   /// Values of one texel in floats: [view][light][rgb], views x lights x 3 of them.
   void abrdf(int x, int y, std::span<float> values) const;
 
@@ -46,13 +61,18 @@ class Btf {
     return halfs_.size() * sizeof(half) + floats_.size() * sizeof(float);
   }
 
+  /// Whether the values lie in a scratch file.
+  bool mapped() const { return halfs_.mapped() || floats_.mapped(); }
+  /// What arrays that are made of the data and grow with them may take; may be null: all there is.
+  const std::shared_ptr<MemoryBudget>& memory() const { return memory_; }
+
   /// Width of one tile in world units, and where the data came from (canonical JSON text).
   float tile_size = 1;
   std::string provenance = "{}";
 
   /// The stored values, one of the two is empty; for decoders and uploads.
-  std::span<const half> halfs() const { return halfs_; }
-  std::span<const float> floats() const { return floats_; }
+  std::span<const half> halfs() const { return halfs_.values(); }
+  std::span<const float> floats() const { return floats_.values(); }
 
  private:
   std::size_t offset(std::size_t light, std::size_t view, int x, int y) const {
@@ -66,9 +86,16 @@ class Btf {
   HemisphereSampling views_;
   HemisphereSampling lights_;
   PixelType type_;
-  std::vector<half> halfs_;
-  std::vector<float> floats_;
+  std::shared_ptr<MemoryBudget> memory_;
+  LargeArray<half> halfs_;
+  LargeArray<float> floats_;
 };
+
+/// Calls `use(first, part)` with all views in turn, those from `first` on as a BTF of their own: as
+/// many at a time as memory allows, so that each walk over a scratch file serves many of them. Data
+/// in memory are one part.
+void for_some_views(const Btf& btf,
+                    const std::function<void(std::size_t first, const Btf& part)>& use);
 
 /// @param values  one view's, [light][y][x][rgb].
 /// @throws Error  naming a sample, where a value is NaN, infinite or negative, or overflows a half

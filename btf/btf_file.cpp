@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -223,18 +225,51 @@ BtfHeader read_btf_header(const fs::path& folder) {
   }
 }
 
-Btf read_btf(const fs::path& folder) {
+namespace {
+
+// How many threads may hold a view's floats at once.
+int readers(const Btf& btf, std::size_t values) {
+  const int threads = tbb::this_task_arena::max_concurrency();
+  if (!btf.memory()) return threads;
+  const std::size_t fit = btf.memory()->left() / (values * sizeof(float));
+  return static_cast<int>(std::clamp<std::size_t>(fit, 1, threads));
+}
+
+// Views `first` and on of a dataset, all that `part` has.
+void read_views(const fs::path& folder, const Json& checksums, std::size_t first, Btf& part) {
+  const std::size_t values =
+      3 * static_cast<std::size_t>(part.width()) * part.height() * part.lights().size();
+  tbb::task_arena arena(readers(part, values));
+  // Views are independent, and no two write to the same values.
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, part.views().size(), [&](std::size_t v) {
+      const fs::path path = folder / view_file_name(first + v);
+      check_checksum(path, checksums);
+      part.set_view(v, read_view_values(path, part.width(), part.height(), part.lights().size()));
+    });
+  });
+}
+
+}  // namespace
+
+Btf read_btf(const fs::path& folder, std::shared_ptr<MemoryBudget> memory) {
   const BtfHeader header = read_btf_header(folder);
-  Btf btf(header.width, header.height, header.views, header.lights, header.pixel_type);
+  Btf btf(header.width, header.height, header.views, header.lights, header.pixel_type,
+          std::move(memory));
   btf.tile_size = header.tile_size;
   btf.provenance = header.provenance;
   const Json checksums = parse(folder / "btf.json").at("xxh3_128");
-  // Views are independent, and no two write to the same values.
-  tbb::parallel_for(std::size_t{0}, header.views.size(), [&](std::size_t v) {
-    check_checksum(folder / view_file_name(v), checksums);
-    btf.set_view(v, read_view_values(folder / view_file_name(v), header.width, header.height,
-                                     header.lights.size()));
-  });
+  if (!btf.mapped()) {
+    read_views(folder, checksums, 0, btf);
+    return btf;
+  }
+  // Many views together are written texel by texel, so that each page is filled at once.
+  const std::size_t at_once = btf.views_at_once();
+  for (std::size_t first = 0; first < header.views.size(); first += at_once) {
+    Btf part = btf.blank_views(first, std::min(at_once, header.views.size() - first));
+    read_views(folder, checksums, first, part);
+    btf.set_views(first, part);
+  }
   return btf;
 }
 
@@ -248,10 +283,12 @@ void write_btf(const fs::path& folder, const Btf& btf) {
                    .provenance = btf.provenance,
                    .standard_errors = {}};
   BtfWriter writer(folder, std::move(header));
-  for (std::size_t v = 0; v < btf.views().size(); ++v) {
-    const std::vector<float> values = btf.view_values(v);
-    writer.write_view(v, {.values = values});
-  }
+  for_some_views(btf, [&](std::size_t first, const Btf& part) {
+    for (std::size_t v = 0; v < part.views().size(); ++v) {
+      const std::vector<float> values = part.view_values(v);
+      writer.write_view(first + v, {.values = values});
+    }
+  });
   writer.finish();
 }
 

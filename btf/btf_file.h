@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "btf/btf.h"
@@ -80,9 +81,10 @@ std::string view_file_name(std::size_t view);
 
 /// @throws Error  naming the file and field that is missing, truncated or of another size.
 BtfHeader read_btf_header(const std::filesystem::path& folder);
-Btf read_btf(const std::filesystem::path& folder);
+/// Each view's file is read once, also where the data are larger than `memory` (see `Btf`).
+Btf read_btf(const std::filesystem::path& folder, std::shared_ptr<MemoryBudget> memory = nullptr);
 
-/// Writes a whole BTF from memory.
+/// Writes a whole BTF.
 void write_btf(const std::filesystem::path& folder, const Btf& btf);
 
 /// Recomputes each file's xxh3-128 and returns the names of those that differ from `btf.json`.

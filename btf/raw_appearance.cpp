@@ -110,7 +110,7 @@ Rgb blended(const Btf& level, const TexelStencil& texels, const SampleStencil& s
 Btf next_mip_level(const Btf& finer) {
   const int width = std::max(1, finer.width() / 2);
   const int height = std::max(1, finer.height() / 2);
-  Btf coarse(width, height, finer.views(), finer.lights(), finer.pixel_type());
+  Btf coarse(width, height, finer.views(), finer.lights(), finer.pixel_type(), finer.memory());
   coarse.tile_size = finer.tile_size;
   const std::size_t count = 3 * finer.views().size() * finer.lights().size();
   tbb::parallel_for(0, width * height, [&](int texel) {

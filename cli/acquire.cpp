@@ -15,6 +15,7 @@
 #include "btf/btf_file.h"
 #include "btf/error.h"
 #include "cli/command.h"
+#include "cli/memory_option.h"
 #include "cli/run_record.h"
 
 namespace weft::cli {
@@ -270,16 +271,9 @@ void add_acquire(CLI::App& app, Session& session) {
   CLI::Option* validate =
       command->add_option("--validate", options->validate,
                           "Also trace N random pairs between the directions into OUT/offgrid/");
-  command
-      ->add_option("--memory", options->memory,
-                   "Most memory, e.g. 4GiB: fewer views are traced at once; 0: as many as threads")
-      ->transform(CLI::AsSizeValue(false))
-      // Runs before the one above, which would take -1 for the largest number there is.
-      ->transform(CLI::Validator(
-          [](const std::string& text) {
-            return text.starts_with('-') ? "is " + text + "; expected 0 or more" : std::string();
-          },
-          ""));
+  add_memory_option(
+      *command, options->memory,
+      "Most memory, e.g. 4GiB: fewer views are traced at once; 0: as many as threads");
   CLI::Option* shard = command->add_option(
       "--shard", options->shard,
       "I/N, 0 <= I < N: only the views v with v % N = I, and no btf.json; any number of shards may "

@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,8 +14,10 @@
 #include "btf/btf_file.h"
 #include "btf/error.h"
 #include "cli/command.h"
+#include "cli/memory_option.h"
 #include "codecs/atomic_folder.h"
 #include "codecs/fit_checkpoint.h"
+#include "codecs/fit_memory.h"
 #include "codecs/representation.h"
 #include "codecs/sample_error.h"
 
@@ -28,6 +32,7 @@ struct Options {
   std::string output;
   std::string codec = "cmf";
   std::vector<std::string> parameters;
+  std::uint64_t memory = 0;
 };
 
 std::string codec_names() {
@@ -67,10 +72,36 @@ void refuse_same_folder(const Options& options) {
   }
 }
 
+// Without a slash at its end.
+fs::path output_folder(const std::string& output) {
+  const fs::path normal = fs::path(output).lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
 // Beside the output: what a codec that takes long has done so far.
 fs::path checkpoint_folder(const std::string& output) {
-  const fs::path normal = fs::path(output).lexically_normal();
-  return (normal.has_filename() ? normal : normal.parent_path()).string() + ".partial";
+  return output_folder(output).string() + ".partial";
+}
+
+// Where people put what is large and short-lived; else where there is to be room for the result.
+fs::path scratch_folder(const Options& options) {
+  const char* named = std::getenv("TMPDIR");
+  if (named != nullptr && *named != 0) return named;
+  return fs::absolute(output_folder(options.output)).parent_path();
+}
+
+std::shared_ptr<const Btf> read_input(const Options& options, const Session& session) {
+  std::shared_ptr<MemoryBudget> memory;
+  if (options.memory > 0) {
+    memory = fit_budget(options.memory, read_btf_header(options.input), scratch_folder(options));
+  }
+  const auto btf = std::make_shared<const Btf>(read_btf(options.input, memory));
+  if (btf->mapped() && lies_in_memory(memory->scratch_folder())) {
+    session.warn(
+        fmt::format("{} lies in memory: --memory saves none; name a folder on a disk in TMPDIR",
+                    memory->scratch_folder().string()));
+  }
+  return btf;
 }
 
 void compress(const Options& options, Session& session, bool seed_given) {
@@ -82,7 +113,7 @@ void compress(const Options& options, Session& session, bool seed_given) {
   if (seed_given && takes_seed(codec))
     overrides.insert(overrides.begin(), fmt::format("seed={}", session.seed));
   const Settings parameters = Settings::from_text("", "--set", overrides);
-  const auto btf = std::make_shared<const Btf>(read_btf(options.input));
+  const auto btf = read_input(options, session);
 
   Progress progress("compress " + options.codec, session.quiet);
   progress.keep_in(checkpoint_folder(options.output));
@@ -130,6 +161,10 @@ void add_compress(CLI::App& app, Session& session) {
       ->add_option("--set", options->parameters,
                    "A parameter of the codec, KEY=VALUE; may be repeated")
       ->allow_extra_args(false);
+  add_memory_option(
+      *command, options->memory,
+      "Most memory, e.g. 2GiB: what does not fit lies in a scratch file in TMPDIR, or "
+      "beside the output; 0: all in memory");
   command->footer(parameter_table());
   command->callback([&app, &session, options] {
     compress(*options, session, app.get_option("--seed")->count() > 0);

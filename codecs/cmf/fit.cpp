@@ -17,8 +17,8 @@ using factor_maps::TexelSource;
 
 namespace {
 
-FittedFactors empty_factors(std::size_t texels, const FitOptions& options) {
-  FittedFactors fitted(texels, options.storage);
+FittedFactors empty_factors(const TexelSource& source, const FitOptions& options) {
+  FittedFactors fitted(source, options.storage);
   const ChainOptions& chain = options.chain;
   const int half_terms = chain.difference ? chain.terms : 1;
   fitted.add(Projection::light, chain.terms);
@@ -46,7 +46,7 @@ void factorise(const TexelSource& source, const Chain& chain, std::span<const st
 factor_maps::Model fit(const std::shared_ptr<const Btf>& btf, const FitOptions& options,
                        Progress& progress) {
   const TexelSource source(btf, options.storage.levels);
-  FittedFactors fitted = empty_factors(source.size(), options);
+  FittedFactors fitted = empty_factors(source, options);
   if (options.rotate) fitted.rotation = greatest_anisotropy(source);
   progress.start(static_cast<std::int64_t>(source.size()), "texels");
   for (int rotation = 0; rotation < factor_maps::rotation_steps; ++rotation) {

@@ -15,13 +15,14 @@ struct Node {
   double error = 0;  // sum of squared distances to the mean
 };
 
-RowMatrix rows_of(const RowMatrix& data, const std::vector<Index>& rows) {
-  RowMatrix part(rows.size(), data.cols());
-  for (std::size_t i = 0; i < rows.size(); ++i) part.row(i) = data.row(rows[i]);
+LargeRows rows_of(const LargeRows& data, const std::vector<Index>& rows) {
+  LargeRows part(static_cast<Index>(rows.size()), data.matrix().cols(), data.memory());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    part.matrix().row(static_cast<Index>(i)) = data.matrix().row(rows[i]);
   return part;
 }
 
-Node node_of(const RowMatrix& data, std::vector<Index> rows) {
+Node node_of(const Rows& data, std::vector<Index> rows) {
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(data.cols());
   for (const Index r : rows) sum += data.row(r).cast<double>();
   Node node{std::move(rows), {}, 0};
@@ -31,10 +32,11 @@ Node node_of(const RowMatrix& data, std::vector<Index> rows) {
 }
 
 // Empty halves where all rows are equal.
-std::pair<std::vector<Index>, std::vector<Index>> halves(const RowMatrix& data, const Node& node,
+std::pair<std::vector<Index>, std::vector<Index>> halves(const LargeRows& data, const Node& node,
                                                          std::uint64_t seed) {
   Progress silent;
-  const Clustering two = k_means(rows_of(data, node.rows), 2, seed, Prototypes::means, silent);
+  const Clustering two =
+      k_means(rows_of(data, node.rows).matrix(), 2, seed, Prototypes::means, silent);
   std::pair<std::vector<Index>, std::vector<Index>> parts;
   for (std::size_t i = 0; i < node.rows.size(); ++i) {
     (two.index[i] == 0 ? parts.first : parts.second).push_back(node.rows[i]);
@@ -42,14 +44,15 @@ std::pair<std::vector<Index>, std::vector<Index>> halves(const RowMatrix& data, 
   return parts;
 }
 
-Clustering tree(const RowMatrix& data, int clusters, std::uint64_t seed) {
+Clustering tree(const LargeRows& rows, int clusters, std::uint64_t seed) {
+  const Rows data = rows.matrix();
   std::vector<Index> all(data.rows());
   for (Index r = 0; r < data.rows(); ++r) all[r] = r;
   std::vector<Node> leaves{node_of(data, std::move(all))};
   while (static_cast<int>(leaves.size()) < clusters) {
     const auto worst = std::ranges::max_element(leaves, {}, &Node::error);
     if (!(worst->error > 0)) break;
-    auto [left, right] = halves(data, *worst, seed + leaves.size());
+    auto [left, right] = halves(rows, *worst, seed + leaves.size());
     if (left.empty() || right.empty()) {  // differences that rounding hides
       worst->error = 0;
       continue;
@@ -68,7 +71,8 @@ Clustering tree(const RowMatrix& data, int clusters, std::uint64_t seed) {
 
 }  // namespace
 
-Codebook cluster(RowMatrix rows, const ClusterOptions& options, Progress& progress) {
+Codebook cluster(LargeRows large, const ClusterOptions& options, Progress& progress) {
+  Eigen::Map<RowMatrix> rows = large.matrix();
   const bool cosine = options.metric == ClusterMetric::cosine;
   Eigen::VectorXf norms;
   if (cosine) {
@@ -79,7 +83,7 @@ Codebook cluster(RowMatrix rows, const ClusterOptions& options, Progress& progre
   }
   Codebook book;
   book.clustering = options.method == ClusterMethod::tree
-                        ? tree(rows, options.clusters, options.seed)
+                        ? tree(large, options.clusters, options.seed)
                         : k_means(rows, options.clusters, options.seed,
                                   cosine ? Prototypes::directions : Prototypes::means, progress);
   book.amplitude.assign(rows.rows(), 1.0F);

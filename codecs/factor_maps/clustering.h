@@ -27,6 +27,6 @@ struct Codebook {
 
 /// @param rows  [map][value]; scaled to length 1 with the cosine metric.
 /// The same for any number of threads.
-Codebook cluster(RowMatrix rows, const ClusterOptions& options, Progress& progress);
+Codebook cluster(LargeRows rows, const ClusterOptions& options, Progress& progress);
 
 }  // namespace weft::factor_maps

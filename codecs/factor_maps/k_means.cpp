@@ -42,7 +42,7 @@ double random_unit(std::uint64_t seed, std::uint64_t draw) {
 // less than two Lloyd iterations.
 class Seeding {
  public:
-  explicit Seeding(const RowMatrix& data)
+  explicit Seeding(const Rows& data)
       : data_(data),
         nearest_(data.rows(), 0),
         distance_(data.rows(), std::numeric_limits<double>::infinity()) {}
@@ -94,13 +94,13 @@ class Seeding {
     return last;
   }
 
-  const RowMatrix& data_;
+  const Rows& data_;
   std::vector<std::size_t> nearest_;
   std::vector<double> distance_;
 };
 
 // |x - c|^2 = |x|^2 - 2 x.c + |c|^2: the middle term is one matrix product a block.
-std::vector<std::uint16_t> nearest_prototypes(const RowMatrix& data, const RowMatrix& prototypes) {
+std::vector<std::uint16_t> nearest_prototypes(const Rows& data, const RowMatrix& prototypes) {
   std::vector<std::uint16_t> index(data.rows());
   const Eigen::VectorXf squares = prototypes.rowwise().squaredNorm();
   for_row_blocks(data.rows(), [&](Index first, Index count) {
@@ -123,7 +123,7 @@ std::vector<std::vector<Index>> members_of(const std::vector<std::uint16_t>& ind
 
 // Means in double, each cluster's members in order. A cluster that lost its members keeps its
 // prototype.
-void move_to_means(const RowMatrix& data, const std::vector<std::uint16_t>& index, Prototypes kind,
+void move_to_means(const Rows& data, const std::vector<std::uint16_t>& index, Prototypes kind,
                    RowMatrix& prototypes) {
   const auto members = members_of(index, prototypes.rows());
   tbb::parallel_for(Index{0}, prototypes.rows(), [&](Index c) {
@@ -139,7 +139,7 @@ void move_to_means(const RowMatrix& data, const std::vector<std::uint16_t>& inde
 }
 
 // An empty cluster takes the row that is furthest from its own prototype.
-void fill_empty_clusters(const RowMatrix& data, std::vector<std::uint16_t>& index,
+void fill_empty_clusters(const Rows& data, std::vector<std::uint16_t>& index,
                          RowMatrix& prototypes) {
   const auto members = members_of(index, prototypes.rows());
   if (std::ranges::none_of(members, [](const auto& m) { return m.empty(); })) return;
@@ -161,7 +161,7 @@ void fill_empty_clusters(const RowMatrix& data, std::vector<std::uint16_t>& inde
 
 }  // namespace
 
-Clustering k_means(const RowMatrix& data, int clusters, std::uint64_t seed, Prototypes kind,
+Clustering k_means(const Rows& data, int clusters, std::uint64_t seed, Prototypes kind,
                    Progress& progress) {
   const std::vector<Index> seeds = Seeding(data).seeds(clusters, seed);
   Clustering result{RowMatrix(seeds.size(), data.cols()), {}};

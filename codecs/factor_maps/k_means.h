@@ -1,15 +1,13 @@
 // k-means clustering of long vectors: k-means++ seeds, Lloyd's iterations, Euclidean metric.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
 #include "btf/progress.h"
+#include "codecs/factor_maps/large_rows.h"
 
 namespace weft::factor_maps {
-
-using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 struct Clustering {
   RowMatrix prototypes;              ///< a row a cluster
@@ -23,7 +21,7 @@ enum class Prototypes { means, directions };
 /// then exact. The same for any number of threads; randomness is a hash of `seed`. `progress` is
 /// advanced once an iteration.
 /// With `Prototypes::directions` rows are to be of length 1 (or 0).
-Clustering k_means(const RowMatrix& data, int clusters, std::uint64_t seed, Prototypes kind,
+Clustering k_means(const Rows& data, int clusters, std::uint64_t seed, Prototypes kind,
                    Progress& progress);
 
 /// Upper bound of the iterations, for `Progress::start`.

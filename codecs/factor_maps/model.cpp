@@ -30,7 +30,7 @@ Projection projection_named(const std::string& name) {
                   "there are light, half, difference and view");
 }
 
-std::vector<std::uint8_t> to_bytes(const std::vector<float>& values) {
+std::vector<std::uint8_t> to_bytes(std::span<const float> values) {
   std::vector<std::uint8_t> bytes(values.size());
   std::ranges::transform(values, bytes.begin(), [](float v) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0F, 1.0F) * 255.0F));

@@ -51,7 +51,7 @@ struct ValueArray {
 };
 
 /// Rounds 0..1 to 8 bits.
-std::vector<std::uint8_t> to_bytes(const std::vector<float>& values);
+std::vector<std::uint8_t> to_bytes(std::span<const float> values);
 
 /// One factor's maps: [map][term][row][column][rgb], each a parabolic map (see `ParabolicMap`).
 struct Factor {

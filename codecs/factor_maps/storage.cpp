@@ -58,12 +58,15 @@ void add_to(nlohmann::json& parameters, const StorageOptions& options) {
   parameters["seed"] = clustering.seed;
 }
 
-FittedFactors::FittedFactors(std::size_t texels, const StorageOptions& options)
-    : scale(3 * texels, 1.0F), resolution(options.resolution) {}
+FittedFactors::FittedFactors(const TexelSource& source, const StorageOptions& options)
+    : scale(3 * source.size(), 1.0F),
+      resolution(options.resolution),
+      memory(source.finest().memory()) {}
 
 void FittedFactors::add(Projection projection, int terms) {
   const auto texels = static_cast<Eigen::Index>(scale.size() / 3);
-  factors.push_back({projection, terms, RowMatrix(texels, 3 * terms * resolution * resolution)});
+  const Eigen::Index values = Eigen::Index{3} * terms * resolution * resolution;
+  factors.push_back({projection, terms, LargeRows(texels, values, memory)});
 }
 
 void store(const LaneVector& maps, std::span<const std::size_t> texels, std::size_t factor,
@@ -72,7 +75,7 @@ void store(const LaneVector& maps, std::span<const std::size_t> texels, std::siz
     float largest = 0;
     for (const Lanes& value : maps) largest = std::max(largest, std::abs(value[k]));
     const std::size_t texel = texels[k / 3];
-    float* row = fitted.factors[factor].maps.row(static_cast<Eigen::Index>(texel)).data();
+    float* row = fitted.factors[factor].maps.matrix().row(static_cast<Eigen::Index>(texel)).data();
     for (std::size_t t = 0; t < maps.size(); ++t) {
       row[3 * t + k % 3] = largest > 0 ? maps[t][k] / largest : 0.0F;
     }
@@ -82,21 +85,21 @@ void store(const LaneVector& maps, std::span<const std::size_t> texels, std::siz
 
 namespace {
 
-ValueArray value_array(const float* values, std::size_t count, bool eight_bit) {
-  std::vector<float> floats(values, values + count);
-  if (eight_bit) return {to_bytes(floats), {}};
-  return {{}, std::move(floats)};
+ValueArray value_array(std::span<const float> values, bool eight_bit) {
+  if (eight_bit) return {to_bytes(values), {}};
+  return {{}, {values.begin(), values.end()}};
 }
 
 // Section 5: a codebook of prototypes and an index map a factor, RGB and terms jointly.
-void cluster_factor(RowMatrix maps, std::size_t factor, const StorageOptions& options, Model& model,
+void cluster_factor(LargeRows maps, std::size_t factor, const StorageOptions& options, Model& model,
                     std::vector<float>& scale, Progress& progress) {
   progress.start(max_k_means_iterations, "iterations");
   ClusterOptions clustering = options.clustering;
   clustering.seed += factor;
   const Codebook book = cluster(std::move(maps), clustering, progress);
   const RowMatrix& prototypes = book.clustering.prototypes;
-  model.factors[factor].maps = value_array(prototypes.data(), prototypes.size(), options.eight_bit);
+  model.factors[factor].maps = value_array(
+      {prototypes.data(), static_cast<std::size_t>(prototypes.size())}, options.eight_bit);
   const std::size_t channels = model.index_channels();
   for (std::size_t texel = 0; texel < model.texels(); ++texel) {
     model.index[channels * texel + factor] =
@@ -117,7 +120,7 @@ void store_scale(std::vector<float> scale, bool eight_bit, Model& model) {
     scale[i] = eight_bit ? std::sqrt(share) : share;
   }
   model.scale_max = largest;
-  model.scale = value_array(scale.data(), scale.size(), eight_bit);
+  model.scale = value_array(scale, eight_bit);
 }
 
 }  // namespace
@@ -142,11 +145,11 @@ Model assemble(const TexelSource& source, FittedFactors fitted, const StorageOpt
   }
   if (options.clustered) model.index.resize(model.index_channels() * model.texels());
   for (std::size_t f = 0; f < fitted.factors.size(); ++f) {
-    RowMatrix maps = std::move(fitted.factors[f].maps);  // freed at the end of its turn
+    LargeRows maps = std::move(fitted.factors[f].maps);  // freed at the end of its turn
     if (options.clustered)
       cluster_factor(std::move(maps), f, options, model, fitted.scale, progress);
     else
-      model.factors[f].maps = value_array(maps.data(), maps.size(), options.eight_bit);
+      model.factors[f].maps = value_array(maps.values(), options.eight_bit);
   }
   std::vector<float> scale =
       options.refit_scale ? least_squares_scale(source, model) : std::move(fitted.scale);

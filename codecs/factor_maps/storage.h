@@ -34,17 +34,18 @@ void add_to(nlohmann::json& parameters, const StorageOptions& options);
 struct FittedFactor {
   Projection projection = Projection::light;
   int terms = 1;
-  RowMatrix maps;
+  LargeRows maps;
 };
 
 struct FittedFactors {
-  FittedFactors(std::size_t texels, const StorageOptions& options);
+  FittedFactors(const TexelSource& source, const StorageOptions& options);
   void add(Projection projection, int terms);
 
   std::vector<FittedFactor> factors;
   std::vector<float> scale;            ///< [texel][rgb]: what the maps were divided by
   std::vector<std::uint8_t> rotation;  ///< as `Model::rotation`
   int resolution;
+  std::shared_ptr<MemoryBudget> memory;  ///< the data's
 };
 
 /// Writes a block's maps of one factor, [term][row][column] in lanes, as rows, each channel divided

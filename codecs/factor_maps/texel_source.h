@@ -14,7 +14,7 @@ namespace weft::factor_maps {
 class TexelSource {
  public:
   /// @param with_levels  false: level 0 alone. Otherwise the mip chain is made, a third of the data
-  ///                     more in memory.
+  ///                     more, where the data's own memory has room.
   TexelSource(std::shared_ptr<const Btf> btf, bool with_levels);
 
   const Btf& finest() const { return *btfs_[0]; }

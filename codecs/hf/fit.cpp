@@ -179,7 +179,7 @@ factor_maps::Model fit(const std::shared_ptr<const Btf>& btf, const FitOptions& 
           : cross_validated_lambda(solver.lookup(), resolution,
                                    logarithms(source.block(few_texels(source)), options.floor));
   const LogSystem system(solver.lookup(), resolution, lambda);
-  FittedFactors fitted(source.size(), options.storage);
+  FittedFactors fitted(source, options.storage);
   for (const Projection p : {Projection::light, Projection::half, Projection::view}) {
     fitted.add(p, 1);
   }

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Index;
 
 /// All texels of one level and one channel, [texel][pair].
-using Level = std::vector<float>;
+using Level = LargeArray<float>;
 
 // One channel of the BTF. Level 0 is read from the data again and again; the coarser ones, a third
 // of its size, are kept. `levels[k]` is F_k at first, and L_k, or what L_k decodes to, at the end.
@@ -68,7 +68,7 @@ class ChannelFit {
 
   // Equation 2.
   Level next_level(int level) const {
-    Level coarse(pyramid_.texels(level) * pairs_);
+    Level coarse(pyramid_.texels(level) * pairs_, btf_.memory());
     tbb::parallel_for(std::size_t{0}, pyramid_.texels(level), [&](std::size_t texel) {
       std::vector<double> sum(pairs_, 0.0);
       std::vector<float> read(pairs_);
@@ -173,7 +173,7 @@ class ChannelFit {
   void replace_level(int level) {
     const std::size_t slots = model_.slots();
     const std::size_t first_row = model_.first_weight_row(level);
-    Level replaced(levels_[level].size());
+    Level replaced(levels_[level].size(), btf_.memory());
     tbb::parallel_for(std::size_t{0}, pyramid_.texels(level), [&](std::size_t texel) {
       float* row = &replaced[texel * pairs_];
       if (!options_.closed_loop) return laplacian_row(level, texel, row, false);

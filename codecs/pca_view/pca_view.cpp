@@ -20,9 +20,12 @@ pca::Model fitted(const Btf& btf, const pca::FitOptions& options, Progress& prog
   TruncatedSvdOptions svd;
   svd.components = model.components;
   svd.centred = true;
-  tbb::parallel_for(std::size_t{0}, n_views, [&](std::size_t view) {
-    pca::store_set(truncated_svd(pca::abrdf_rows(btf, view, 1), svd), view, view, model);
-    progress.advance(1);
+  for_some_views(btf, [&](std::size_t first, const Btf& part) {
+    tbb::parallel_for(std::size_t{0}, part.views().size(), [&](std::size_t v) {
+      const std::size_t view = first + v;
+      pca::store_set(truncated_svd(pca::abrdf_rows(part, v, 1), svd), view, view, model);
+      progress.advance(1);
+    });
   });
   pca::store_means(model);
   progress.finish();

@@ -174,6 +174,27 @@ TEST_CASE("Every codec: the same bytes with one thread and with two") {
   }
 }
 
+TEST_CASE("Every codec: the same bytes from a scratch file as from memory") {
+  const auto btf = realistic_btf(8, "regular:3x6");
+  const TemporaryFolder scratch;
+  for (const Case& c : cases()) {
+    INFO(label(c));
+    const TemporaryFolder folder;
+    fit(codec_named(c.codec), btf, c.parameters)->save(folder.path / "memory");
+    // There is room for a few views, and not for what is made of all of them.
+    const std::size_t memory = btf->bytes() / btf->views().size() * 4;
+    Btf mapped(btf->width(), btf->height(), btf->views(), btf->lights(), btf->pixel_type(),
+               std::make_shared<MemoryBudget>(memory, scratch.path));
+    mapped.set_views(0, *btf);
+    REQUIRE(mapped.mapped());
+    fit(codec_named(c.codec), std::make_shared<const Btf>(std::move(mapped)), c.parameters)
+        ->save(folder.path / "mapped");
+    const bool same_files =
+        file_contents(folder.path / "memory") == file_contents(folder.path / "mapped");
+    CHECK(same_files);
+  }
+}
+
 TEST_CASE("Every codec: below the horizon there is nothing, and uv repeat") {
   const auto btf = realistic_btf(4, "regular:3x6");
   for (const Codec& codec : codecs()) {
