@@ -16,7 +16,4 @@ namespace weft::cmf {
 /// The same for any number of threads. Costs a pass over the data.
 std::vector<std::uint8_t> greatest_anisotropy(const factor_maps::TexelSource& source);
 
-/// Lights or views turned by minus `steps`.
-HemisphereSampling turned_back(const HemisphereSampling& sampling, int steps);
-
 }  // namespace weft::cmf

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codecs/cmf/anisotropy.h"
+#include "codecs/factor_maps/rotation.h"
 
 namespace weft::cmf {
 
@@ -14,6 +15,7 @@ using factor_maps::FittedFactors;
 using factor_maps::Projection;
 using factor_maps::texels_a_block;
 using factor_maps::TexelSource;
+using factor_maps::turned_back;
 
 namespace {
 

@@ -13,6 +13,8 @@ constexpr const char* four_factors = "light,half,difference,view";
 constexpr const char* three_factors = "light,half,view";
 constexpr const char* two_factors = "light,view";
 
+constexpr int refine_codebooks = 2;
+
 }  // namespace
 
 FitOptions fit_options(const Settings& parameters) {
@@ -30,11 +32,18 @@ FitOptions fit_options(const Settings& parameters) {
           "leave it out too");
     }
   }
-  options.storage = factor_maps::storage_options(parameters);
+  options.storage = factor_maps::storage_options(parameters, refine_codebooks);
   chain.resolution = options.storage.resolution;
   chain.sign = options.storage.eight_bit ? Sign::non_negative : Sign::any;
   chain.terms =
       static_cast<int>(parameters.integer("terms", chain.terms, 1, factor_maps::max_terms));
+  if (chain.terms > 1) {
+    if (parameters.has("refine_codebooks") && options.storage.refine_codebooks > 0) {
+      throw bad_input(parameters.where("refine_codebooks"),
+                      "refine_codebooks is of products of one term", "leave it or terms out");
+    }
+    options.storage.refine_codebooks = 0;
+  }
   chain.order = parameters.choice("order", {"half-first", "half-last"}) == "half-last"
                     ? Order::half_last
                     : Order::half_first;
@@ -50,7 +59,7 @@ FitOptions fit_options(const Settings& parameters) {
 }
 
 std::string parameter_help() {
-  return factor_maps::storage_help() +
+  return factor_maps::storage_help(refine_codebooks) +
          "difference_rings = 8      grid that the half factor averages over: N x 2 N differences\n"
          "factors = light,half,view also light,view and light,half,difference,view\n"
          "order = half-first        half-first | half-last: which link of the chain is fitted "

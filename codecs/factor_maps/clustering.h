@@ -25,8 +25,10 @@ struct Codebook {
   std::vector<float> amplitude;
 };
 
-/// @param rows  [map][value]; scaled to length 1 with the cosine metric.
+/// @param rows     [map][value]; scaled to length 1 with the cosine metric.
+/// @param weights  what a row's squared error counts, >= 0.
 /// The same for any number of threads.
-Codebook cluster(LargeRows rows, const ClusterOptions& options, Progress& progress);
+Codebook cluster(LargeRows rows, std::vector<double> weights, const ClusterOptions& options,
+                 Progress& progress);
 
 }  // namespace weft::factor_maps

@@ -36,14 +36,15 @@ double random_unit(std::uint64_t seed, std::uint64_t draw) {
   return static_cast<double>(h >> 11) * 0x1p-53;
 }
 
-// Arthur and Vassilvitskii's seeding: each next seed is drawn by its squared distance to the
-// nearest one so far. A row whose nearest seed is less than half as far as that seed is from the
-// new one cannot come nearer, and is left alone: most are, which makes 256 seeds of 4,096 maps cost
-// less than two Lloyd iterations.
+// Arthur and Vassilvitskii's seeding: each next seed is drawn by its weight times its squared
+// distance to the nearest one so far. A row whose nearest seed is less than half as far as that
+// seed is from the new one cannot come nearer, and is left alone: most are, which makes 256 seeds
+// of 4,096 maps cost less than two Lloyd iterations.
 class Seeding {
  public:
-  explicit Seeding(const Rows& data)
+  Seeding(const Rows& data, const std::vector<double>& weights)
       : data_(data),
+        weights_(weights),
         nearest_(data.rows(), 0),
         distance_(data.rows(), std::numeric_limits<double>::infinity()) {}
 
@@ -81,20 +82,23 @@ class Seeding {
   // The row where the running sum of squared distances passes `unit` of the whole; -1 where the
   // whole is zero.
   Index draw(double unit) const {
-    const double total = std::accumulate(distance_.begin(), distance_.end(), 0.0);
+    const double total =
+        std::inner_product(distance_.begin(), distance_.end(), weights_.begin(), 0.0);
     if (!(total > 0)) return -1;
     double left = unit * total;
     Index last = -1;
     for (Index r = 0; r < data_.rows(); ++r) {
-      if (!(distance_[r] > 0)) continue;
+      const double share = weights_[r] * distance_[r];
+      if (!(share > 0)) continue;
       last = r;
-      left -= distance_[r];
+      left -= share;
       if (left < 0) break;
     }
     return last;
   }
 
   const Rows& data_;
+  const std::vector<double>& weights_;
   std::vector<std::size_t> nearest_;
   std::vector<double> distance_;
 };
@@ -121,32 +125,34 @@ std::vector<std::vector<Index>> members_of(const std::vector<std::uint16_t>& ind
   return members;
 }
 
-// Means in double, each cluster's members in order. A cluster that lost its members keeps its
-// prototype.
-void move_to_means(const Rows& data, const std::vector<std::uint16_t>& index, Prototypes kind,
+// Means in double, each cluster's members in order. A cluster that lost its members, or whose
+// members have no weight, keeps its prototype.
+void move_to_means(const Rows& data, const std::vector<double>& weights,
+                   const std::vector<std::uint16_t>& index, Prototypes kind,
                    RowMatrix& prototypes) {
   const auto members = members_of(index, prototypes.rows());
   tbb::parallel_for(Index{0}, prototypes.rows(), [&](Index c) {
-    if (members[c].empty()) return;
     Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(data.cols());
-    for (const Index r : members[c]) sum += data.row(r).cast<double>();
-    const double norm = sum.norm();
-    const double divisor = kind == Prototypes::means ? static_cast<double>(members[c].size())
-                           : norm > 0                ? norm
-                                                     : 1.0;
+    double weight = 0;
+    for (const Index r : members[c]) {
+      sum += weights[r] * data.row(r).cast<double>();
+      weight += weights[r];
+    }
+    const double divisor = kind == Prototypes::means ? weight : sum.norm();
+    if (!(divisor > 0)) return;
     prototypes.row(c) = (sum / divisor).cast<float>();
   });
 }
 
-// An empty cluster takes the row that is furthest from its own prototype.
-void fill_empty_clusters(const Rows& data, std::vector<std::uint16_t>& index,
-                         RowMatrix& prototypes) {
+// An empty cluster takes the row whose distance to its own prototype weighs most.
+void fill_empty_clusters(const Rows& data, const std::vector<double>& weights,
+                         std::vector<std::uint16_t>& index, RowMatrix& prototypes) {
   const auto members = members_of(index, prototypes.rows());
   if (std::ranges::none_of(members, [](const auto& m) { return m.empty(); })) return;
-  std::vector<float> distance(data.rows());
+  std::vector<double> distance(data.rows());
   for_row_blocks(data.rows(), [&](Index first, Index count) {
     for (Index r = first; r < first + count; ++r) {
-      distance[r] = (data.row(r) - prototypes.row(index[r])).squaredNorm();
+      distance[r] = weights[r] * (data.row(r) - prototypes.row(index[r])).squaredNorm();
     }
   });
   for (Index c = 0; c < prototypes.rows(); ++c) {
@@ -161,19 +167,19 @@ void fill_empty_clusters(const Rows& data, std::vector<std::uint16_t>& index,
 
 }  // namespace
 
-Clustering k_means(const Rows& data, int clusters, std::uint64_t seed, Prototypes kind,
-                   Progress& progress) {
-  const std::vector<Index> seeds = Seeding(data).seeds(clusters, seed);
+Clustering k_means(const Rows& data, const std::vector<double>& weights, int clusters,
+                   std::uint64_t seed, Prototypes kind, Progress& progress) {
+  const std::vector<Index> seeds = Seeding(data, weights).seeds(clusters, seed);
   Clustering result{RowMatrix(seeds.size(), data.cols()), {}};
   for (std::size_t c = 0; c < seeds.size(); ++c) result.prototypes.row(c) = data.row(seeds[c]);
   for (int iteration = 0; iteration < max_k_means_iterations; ++iteration) {
     std::vector<std::uint16_t> index = nearest_prototypes(data, result.prototypes);
-    fill_empty_clusters(data, index, result.prototypes);
+    fill_empty_clusters(data, weights, index, result.prototypes);
     progress.advance(1);
     const bool settled = index == result.index;
     result.index = std::move(index);
     if (settled) break;
-    move_to_means(data, result.index, kind, result.prototypes);
+    move_to_means(data, weights, result.index, kind, result.prototypes);
   }
   return result;
 }

@@ -1,21 +1,33 @@
 #include "codecs/factor_maps/storage.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "btf/error.h"
+#include "codecs/factor_maps/codebook_refinement.h"
 #include "codecs/factor_maps/scale_map.h"
 
 namespace weft::factor_maps {
 
-StorageOptions storage_options(const Settings& parameters) {
+StorageOptions storage_options(const Settings& parameters, int refine_codebooks) {
   StorageOptions options;
   options.eight_bit = parameters.choice("bits", {"8", "float"}) == "8";
   options.clustered = parameters.flag("clustered", options.clustered);
   options.levels = parameters.flag("levels", options.levels);
   options.refit_scale = parameters.flag("refit_scale", options.refit_scale);
+  options.weighted = parameters.flag("weighted", options.weighted);
+  const bool refinable = options.clustered && options.refit_scale;
+  options.refine_codebooks = static_cast<int>(
+      parameters.integer("refine_codebooks", refinable ? refine_codebooks : 0, 0, 1000));
+  if (options.refine_codebooks > 0 && !refinable) {
+    throw bad_input(parameters.where("refine_codebooks"),
+                    "refine_codebooks needs clustered=true and refit_scale=true", "leave it out");
+  }
   options.resolution =
       static_cast<int>(parameters.integer("resolution", options.resolution, 2, 256));
   ClusterOptions& clustering = options.clustering;
@@ -32,7 +44,7 @@ StorageOptions storage_options(const Settings& parameters) {
   return options;
 }
 
-std::string storage_help() {
+std::string storage_help(int refine_codebooks) {
   return "bits = 8                  8 | float: what the textures hold\n"
          "clustered = true          codebooks and index maps; false: every texel keeps its own "
          "maps\n"
@@ -40,9 +52,13 @@ std::string storage_help() {
          "clusters = 256            size of each factor's codebook, 1 to 256\n"
          "levels = true             mip levels, fitted to the data's and sharing the codebooks\n"
          "metric = euclidean        euclidean | cosine: which maps are alike\n"
+         "refine_codebooks = " +
+         std::to_string(refine_codebooks) +
+         "      rounds that improve codebooks and indices together, against the data\n"
          "refit_scale = true        solve the scale map again after clustering and quantisation\n"
          "resolution = 32           texels a side of each parabolic map, 2 to 256\n"
-         "seed = 0                  of k-means++\n";
+         "seed = 0                  of k-means++\n"
+         "weighted = true           clustering weighs a texel by the energy that is seen of it\n";
 }
 
 void add_to(nlohmann::json& parameters, const StorageOptions& options) {
@@ -53,9 +69,11 @@ void add_to(nlohmann::json& parameters, const StorageOptions& options) {
   parameters["clusters"] = clustering.clusters;
   parameters["levels"] = options.levels;
   parameters["metric"] = clustering.metric == ClusterMetric::cosine ? "cosine" : "euclidean";
+  parameters["refine_codebooks"] = options.refine_codebooks;
   parameters["refit_scale"] = options.refit_scale;
   parameters["resolution"] = options.resolution;
   parameters["seed"] = clustering.seed;
+  parameters["weighted"] = options.weighted;
 }
 
 FittedFactors::FittedFactors(const TexelSource& source, const StorageOptions& options)
@@ -90,16 +108,53 @@ ValueArray value_array(std::span<const float> values, bool eight_bit) {
   return {{}, {values.begin(), values.end()}};
 }
 
+// Of each texel the sum of B^2. An error of a map that is a share x of it makes about x^2 of that.
+std::vector<double> energies(const TexelSource& source) {
+  const std::size_t values = 3 * source.finest().lights().size() * source.finest().views().size();
+  std::vector<double> energy(source.size());
+  tbb::parallel_for(std::size_t{0}, energy.size(), [&](std::size_t t) {
+    std::vector<float> abrdf(values);
+    source.abrdf(t, abrdf);
+    for (const float b : abrdf) energy[t] += static_cast<double>(b) * b;
+  });
+  return energy;
+}
+
+// A codebook's maps divided by their largest magnitude in each channel, which the scale takes.
+void normalise(std::size_t factor, Model& model, std::vector<float>& scale) {
+  std::vector<float>& values = model.factors[factor].maps.floats;
+  const std::size_t maps = model.map_count(factor);
+  const std::size_t map = values.size() / maps;
+  std::vector<float> largest(3 * maps);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    float& own = largest[3 * (i / map) + i % 3];
+    own = std::max(own, std::abs(values[i]));
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float divisor = largest[3 * (i / map) + i % 3];
+    if (divisor > 0) values[i] /= divisor;
+  }
+  for (std::size_t i = 0; i < scale.size(); ++i)
+    scale[i] *= largest[3 * model.map_of(factor, i / 3) + i % 3];
+}
+
+// `energy`: empty where all texels count alike.
 // Section 5: a codebook of prototypes and an index map a factor, RGB and terms jointly.
-void cluster_factor(LargeRows maps, std::size_t factor, const StorageOptions& options, Model& model,
-                    std::vector<float>& scale, Progress& progress) {
+void cluster_factor(LargeRows maps, const std::vector<double>& energy, std::size_t factor,
+                    const StorageOptions& options, Model& model, std::vector<float>& scale,
+                    Progress& progress) {
   progress.start(max_k_means_iterations, "iterations");
+  std::vector<double> weights(model.texels(), 1.0);
+  for (std::size_t t = 0; t < energy.size(); ++t) {
+    const double square = maps.matrix().row(static_cast<Eigen::Index>(t)).squaredNorm();
+    weights[t] = square > 0 ? energy[t] / square : 0.0;
+  }
   ClusterOptions clustering = options.clustering;
   clustering.seed += factor;
-  const Codebook book = cluster(std::move(maps), clustering, progress);
+  const Codebook book = cluster(std::move(maps), std::move(weights), clustering, progress);
   const RowMatrix& prototypes = book.clustering.prototypes;
-  model.factors[factor].maps = value_array(
-      {prototypes.data(), static_cast<std::size_t>(prototypes.size())}, options.eight_bit);
+  model.factors[factor].maps =
+      value_array({prototypes.data(), static_cast<std::size_t>(prototypes.size())}, false);
   const std::size_t channels = model.index_channels();
   for (std::size_t texel = 0; texel < model.texels(); ++texel) {
     model.index[channels * texel + factor] =
@@ -144,12 +199,23 @@ Model assemble(const TexelSource& source, FittedFactors fitted, const StorageOpt
     model.factors.push_back({factor.projection, factor.terms, {}});
   }
   if (options.clustered) model.index.resize(model.index_channels() * model.texels());
+  const std::vector<double> energy =
+      options.clustered && options.weighted ? energies(source) : std::vector<double>();
   for (std::size_t f = 0; f < fitted.factors.size(); ++f) {
     LargeRows maps = std::move(fitted.factors[f].maps);  // freed at the end of its turn
     if (options.clustered)
-      cluster_factor(std::move(maps), f, options, model, fitted.scale, progress);
+      cluster_factor(std::move(maps), energy, f, options, model, fitted.scale, progress);
     else
       model.factors[f].maps = value_array(maps.values(), options.eight_bit);
+  }
+  if (options.refine_codebooks > 0)
+    refine_codebooks(source, options.refine_codebooks, model, progress);
+  if (options.clustered) {
+    for (std::size_t f = 0; f < model.factors.size(); ++f) {
+      normalise(f, model, fitted.scale);
+      const std::vector<float> maps = std::move(model.factors[f].maps.floats);
+      model.factors[f].maps = value_array(maps, options.eight_bit);
+    }
   }
   std::vector<float> scale =
       options.refit_scale ? least_squares_scale(source, model) : std::move(fitted.scale);

@@ -15,18 +15,21 @@
 namespace weft::factor_maps {
 
 struct StorageOptions {
-  bool eight_bit = true;    ///< textures of 8 bits, otherwise float
-  bool clustered = true;    ///< codebooks and index maps, otherwise every texel's own maps
-  bool levels = true;       ///< mip levels too
-  bool refit_scale = true;  ///< solve the scale map again once the maps are what the GPU gets
-  int resolution = 32;      ///< texels a side of each map
+  bool eight_bit = true;     ///< textures of 8 bits, otherwise float
+  bool clustered = true;     ///< codebooks and index maps, otherwise every texel's own maps
+  bool levels = true;        ///< mip levels too
+  bool refit_scale = true;   ///< solve the scale map again once the maps are what the GPU gets
+  bool weighted = true;      ///< clustering weighs texels by their energy, not each alike
+  int refine_codebooks = 0;  ///< rounds of `refine_codebooks`; needs refit_scale and one term
+  int resolution = 32;       ///< texels a side of each map
   ClusterOptions clustering;
 };
 
 /// Reads the keys of `storage_help`. @throws Error  for a value out of range.
-StorageOptions storage_options(const Settings& parameters);
+/// @param refine_codebooks  its default, where the scale is refitted.
+StorageOptions storage_options(const Settings& parameters, int refine_codebooks = 0);
 /// Lines "name = default   meaning".
-std::string storage_help();
+std::string storage_help(int refine_codebooks = 0);
 /// Adds every parameter.
 void add_to(nlohmann::json& parameters, const StorageOptions& options);
 

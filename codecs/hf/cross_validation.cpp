@@ -29,14 +29,14 @@ DoubleVector signs(std::size_t pairs) {
   return result;
 }
 
-// M A^-1 M^T f / samples.
-DoubleVector fitted(const LogLookup& lookup, const LogSystem& system, const DoubleVector& f) {
+// A^-1 M^T f / samples.
+DoubleVector solution(const LogLookup& lookup, const LogSystem& system, const DoubleVector& f) {
   DoubleVector right = lookup.transposed_times(f);
   const double weight = 1.0 / static_cast<double>(lookup.pairs());
   for (auto& value : right) {
     for (int k = 0; k < lane_count; ++k) value[k] *= weight;
   }
-  return lookup.times(system.solve(right));
+  return system.solve(right);
 }
 
 // The trace as a share of the samples.
@@ -48,26 +48,16 @@ double trace_share(const DoubleVector& probes, const DoubleVector& answers) {
   return sum / (static_cast<double>(probes.size()) * lane_count);
 }
 
-double squared_error(const DoubleVector& f, const DoubleVector& answers) {
-  double sum = 0;
-  for (std::size_t pair = 0; pair < f.size(); ++pair) {
-    for (int k = 0; k < lane_count; ++k) {
-      const double difference = f[pair][k] - answers[pair][k];
-      sum += difference * difference;
-    }
-  }
-  return sum;
-}
-
 }  // namespace
 
-double cross_validated_lambda(const LogLookup& lookup, int resolution, const DoubleVector& log_f) {
+double cross_validated_lambda(const LogLookup& lookup, int resolution, const DoubleVector& log_f,
+                              const std::function<double(const DoubleVector& x)>& error) {
   const DoubleVector probes = signs(lookup.pairs());
   std::array<double, candidates> score{};
   tbb::parallel_for(0, candidates, [&](int i) {
     const LogSystem system(lookup, resolution, candidate(i));
-    const double left = 1 - trace_share(probes, fitted(lookup, system, probes));
-    score[i] = squared_error(log_f, fitted(lookup, system, log_f)) / (left * left);
+    const double left = 1 - trace_share(probes, lookup.times(solution(lookup, system, probes)));
+    score[i] = error(solution(lookup, system, log_f)) / (left * left);
   });
   return candidate(static_cast<int>(std::ranges::min_element(score) - score.begin()));
 }

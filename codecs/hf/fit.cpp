@@ -55,6 +55,14 @@ std::string to_json(const FitOptions& options, double lambda) {
   return json.dump();
 }
 
+Lanes largest_of(const LaneVector& values) {
+  Lanes largest;
+  for (const Lanes& value : values) {
+    for (int k = 0; k < lane_count; ++k) largest[k] = std::max(largest[k], value[k]);
+  }
+  return largest;
+}
+
 // Natural logarithms of what is raised to the floor; 0 in a lane of zeros.
 DoubleVector logarithms(const LaneVector& f, double floor) {
   DoubleLanes mean;
@@ -92,7 +100,9 @@ class Solver {
     for (DoubleLanes& value : right) {
       for (int k = 0; k < lane_count; ++k) value[k] *= weight;
     }
-    const DoubleVector x = system.solve(right);
+    return exponentials(system.solve(right));
+  }
+  Solution exponentials(const DoubleVector& x) const {
     Solution solution;
     for (int f = 0; f < factor_count; ++f) solution.maps[f] = exponential(x, f, solution.shift);
     return solution;
@@ -138,6 +148,43 @@ class Solver {
   SampleMap view_map_;
 };
 
+// What is seen of the maps' error: that of B, with the best scale in each lane, over all.
+double seen_error(const Solver& solver, const HemisphereSampling& lights, bool eight_bit,
+                  const LaneVector& f, const DoubleVector& x) {
+  std::array<LaneVector, factor_count> maps = solver.exponentials(x).maps;
+  for (LaneVector& map : maps) {
+    const Lanes largest = largest_of(map);
+    for (Lanes& texel : map) {
+      for (int k = 0; eight_bit && k < lane_count; ++k)
+        texel[k] = largest[k] > 0 ? std::round(texel[k] / largest[k] * 255) : 0;
+    }
+  }
+  const std::size_t n_views = f.size() / lights.size();
+  DoubleLanes data;
+  DoubleLanes product;
+  DoubleLanes square;
+  for (std::size_t pair = 0; pair < f.size(); ++pair) {
+    std::array<Lanes, factor_count> value;
+    for (int factor = 0; factor < factor_count; ++factor) {
+      const factor_maps::BilinearTaps& taps = solver.lookup().taps(pair, factor);
+      for (std::size_t t = 0; t < 4; ++t)
+        factor_maps::add_scaled(value[factor], taps.weight[t], maps[factor][taps.index[t]]);
+    }
+    const double cosine = lights[pair / n_views].z;
+    for (int k = 0; k < lane_count; ++k) {
+      const double b = cosine * f[pair][k];
+      const double g = cosine * value[0][k] * value[1][k] * value[2][k];
+      data[k] += b * b;
+      product[k] += b * g;
+      square[k] += g * g;
+    }
+  }
+  double error = 0;
+  for (int k = 0; k < lane_count; ++k)
+    error += data[k] - (square[k] > 0 ? product[k] * product[k] / square[k] : 0.0);
+  return error;
+}
+
 // Sixteen texels of the finest level, evenly spread.
 std::vector<std::size_t> few_texels(const TexelSource& source) {
   const auto& finest = source.levels()[0];
@@ -152,12 +199,18 @@ std::vector<std::size_t> few_texels(const TexelSource& source) {
   return few;
 }
 
+double found_lambda(const TexelSource& source, const Solver& solver, int resolution,
+                    const FitOptions& options) {
+  const LaneVector f = source.block(few_texels(source));
+  return cross_validated_lambda(
+      solver.lookup(), resolution, logarithms(f, options.floor), [&](const DoubleVector& x) {
+        return seen_error(solver, source.finest().lights(), options.storage.eight_bit, f, x);
+      });
+}
+
 void store_block(Solver::Solution solution, const LaneVector& f,
                  std::span<const std::size_t> texels, FittedFactors& fitted) {
-  Lanes brightest;
-  for (const Lanes& pair : f) {
-    for (int k = 0; k < lane_count; ++k) brightest[k] = std::max(brightest[k], pair[k]);
-  }
+  const Lanes brightest = largest_of(f);
   for (int factor = 0; factor < factor_count; ++factor)
     store(solution.maps[factor], texels, factor, fitted);
   for (int k = 0; k < 3 * static_cast<int>(texels.size()); ++k) {
@@ -174,10 +227,7 @@ factor_maps::Model fit(const std::shared_ptr<const Btf>& btf, const FitOptions& 
   const int resolution = options.storage.resolution;
   const Solver solver(btf->lights(), btf->views(), resolution);
   const double lambda =
-      options.lambda
-          ? *options.lambda
-          : cross_validated_lambda(solver.lookup(), resolution,
-                                   logarithms(source.block(few_texels(source)), options.floor));
+      options.lambda ? *options.lambda : found_lambda(source, solver, resolution, options);
   const LogSystem system(solver.lookup(), resolution, lambda);
   FittedFactors fitted(source, options.storage);
   for (const Projection p : {Projection::light, Projection::half, Projection::view}) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -153,8 +154,18 @@ TEST_CASE("Cross validation smooths noise, and leaves clean data alone") {
       noise[pair][k] = hash - std::floor(hash) - 0.5;
     }
   }
-  const double of_clean = cross_validated_lambda(lookup, resolution, clean);
-  const double of_noise = cross_validated_lambda(lookup, resolution, noise);
+  const auto found = [&](const DoubleVector& log_f) {
+    return cross_validated_lambda(lookup, resolution, log_f, [&](const DoubleVector& x) {
+      const DoubleVector fitted = lookup.times(x);
+      double sum = 0;
+      for (std::size_t pair = 0; pair < fitted.size(); ++pair) {
+        for (int k = 0; k < lane_count; ++k) sum += std::pow(fitted[pair][k] - log_f[pair][k], 2);
+      }
+      return sum;
+    });
+  };
+  const double of_clean = found(clean);
+  const double of_noise = found(noise);
   INFO("clean " << of_clean << ", noise " << of_noise);
   CHECK(of_clean < 0.05);
   CHECK(of_noise > 10 * of_clean);
@@ -173,6 +184,29 @@ TEST_CASE("What the Laplacian extrapolates does not take the steps of 8 bits") {
   INFO("floats " << in_floats << ", bytes " << in_bytes);
   CHECK(in_floats < 0.01);
   CHECK(in_bytes < 0.02);
+}
+
+TEST_CASE(
+    "lambda = auto is near the best of all lambdas for what is seen, in floats and in 8 bits") {
+  const auto btf = realistic_btf(4, "regular:4x8");
+  for (const std::string bits : {"float", "8"}) {
+    const std::vector<std::string> common{"levels=false", "clustered=false", "bits=" + bits};
+    const auto error = [&](const std::string& lambda) {
+      std::vector<std::string> parameters = common;
+      parameters.push_back("lambda=" + lambda);
+      return hf_error(btf, parameters);
+    };
+    double best = 1e9;
+    double worst = 0;
+    for (const std::string lambda : {"0.001", "0.01", "0.1", "1", "10"}) {
+      best = std::min(best, error(lambda));
+      worst = std::max(worst, error(lambda));
+    }
+    const double found = error("auto");
+    INFO(bits << ": auto " << found << ", best " << best << ", worst " << worst);
+    CHECK(found < 1.1 * best);
+    CHECK(found < 0.9 * worst);
+  }
 }
 
 TEST_CASE("lambda = auto fits as the number that it finds does, whatever the threads") {
