@@ -12,6 +12,8 @@ namespace {
 using Eigen::Index;
 
 constexpr double largest_alpha = 1e4;
+// How much higher than at the samples the lobe may be where there are none.
+constexpr double largest_rise = 2;
 
 struct Sample {
   double light_cosine;
@@ -29,12 +31,15 @@ struct Residuals {
   static constexpr int ValuesAtCompileTime = Eigen::Dynamic;
 
   const std::vector<Sample>& samples;
+  double alpha_bound;
 
   int inputs() const { return 4; }
   int values() const { return std::max(4, static_cast<int>(samples.size())); }
 
+  double alpha(const InputType& p) const { return std::min(p[3] * p[3], alpha_bound); }
+
   double lobe(const Sample& s, const InputType& p) const {
-    return std::exp(p[3] * p[3] * s.log_half_cosine);
+    return std::exp(alpha(p) * s.log_half_cosine);
   }
 
   int operator()(const InputType& p, ValueType& residuals) const {
@@ -49,11 +54,12 @@ struct Residuals {
 
   int df(const InputType& p, JacobianType& jacobian) const {
     jacobian.setZero();
+    const double alpha_slope = p[3] * p[3] < alpha_bound ? 2 * p[3] : 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const Sample& s = samples[i];
       const double l = lobe(s, p);
       jacobian.row(static_cast<Index>(i)) << 2 * p[0], 2 * p[1] * s.light_cosine, 2 * p[2] * l,
-          2 * p[3] * p[2] * p[2] * l * s.log_half_cosine;
+          alpha_slope * p[2] * p[2] * l * s.log_half_cosine;
     }
     return 0;
   }
@@ -75,6 +81,15 @@ std::vector<Sample> samples_of(const HemisphereSampling& views, const Hemisphere
   return samples;
 }
 
+// A lobe that is sharper than the samples can tell has any height at N.H = 1 for nothing: where no
+// sample comes near the mirror direction, alpha is bounded so that (N.H)^alpha rises little beyond.
+double alpha_bound(const std::vector<Sample>& samples) {
+  double nearest = -std::numeric_limits<double>::infinity();
+  for (const Sample& s : samples) nearest = std::max(nearest, s.log_half_cosine);
+  const double bound = largest_alpha;
+  return -nearest * bound > std::log(largest_rise) ? std::log(largest_rise) / -nearest : bound;
+}
+
 }  // namespace
 
 Phong fit_phong(const HemisphereSampling& views, const HemisphereSampling& lights,
@@ -83,14 +98,14 @@ Phong fit_phong(const HemisphereSampling& views, const HemisphereSampling& light
   for (const double value : values) largest = std::max(largest, std::abs(value));
   if (!(largest > 0)) return {};
   const std::vector<Sample> samples = samples_of(views, lights, values, largest);
-  Residuals residuals{samples};
+  const Residuals residuals{samples, alpha_bound(samples)};
   double least = std::numeric_limits<double>::infinity();
   Phong best;
   // A broad, a middling and a sharp lobe: the error has a valley for each.
   for (const double alpha : {2.0, 16.0, 128.0}) {
     Eigen::VectorXd p(4);
-    p << 0.3, 0.5, 0.5, std::sqrt(alpha);
-    Eigen::LevenbergMarquardt<Residuals> solver(residuals);
+    p << 0.3, 0.5, 0.5, std::sqrt(std::min(alpha, residuals.alpha_bound / 2));
+    Eigen::LevenbergMarquardt<const Residuals> solver(residuals);
     solver.parameters.maxfev = 200;
     solver.minimize(p);
     Eigen::VectorXd left(residuals.values());
@@ -99,8 +114,7 @@ Phong fit_phong(const HemisphereSampling& views, const HemisphereSampling& light
     if (!p.allFinite() || !(error < least)) continue;
     least = error;
     best = {static_cast<float>(p[0] * p[0] * largest), static_cast<float>(p[1] * p[1] * largest),
-            static_cast<float>(p[2] * p[2] * largest),
-            static_cast<float>(std::min(p[3] * p[3], largest_alpha))};
+            static_cast<float>(p[2] * p[2] * largest), static_cast<float>(residuals.alpha(p))};
   }
   return best;
 }

@@ -176,6 +176,31 @@ TEST_CASE("Phong's parameters come back, none below zero") {
   CHECK(laplacian::fit_phong(ubo81, ubo81, values_of({0, 0, 0, 1})) == laplacian::Phong{});
 }
 
+TEST_CASE("Phong's lobe does not tower where the samples cannot tell its height") {
+  // A view and lights that are never near each other's mirror direction: ks (N.H)^alpha with a huge
+  // ks fits as well as a broad lobe.
+  const HemisphereSampling view({from_spherical(radians(70.0), 0)});
+  for (const double spread : {0.0, 0.4, 1.5}) {
+    std::vector<Direction> lights;
+    for (int i = -2; i <= 2; ++i) lights.push_back(from_spherical(radians(75.0), i * spread / 2));
+    const HemisphereSampling light_sampling(spread > 0 ? lights : std::vector{lights[2]});
+    for (const double sharp : {0.0, 50.0, 5000.0}) {
+      std::vector<double> values;
+      double largest = 0;
+      for (const Direction& light : light_sampling.directions()) {
+        const double half_z = (light + view.directions()[0]).normalized().z;
+        values.push_back(0.1 + std::pow(half_z / 0.5, sharp) * 1e-3);
+        largest = std::max(largest, values.back());
+      }
+      const laplacian::Phong phong = laplacian::fit_phong(view, light_sampling, values);
+      INFO("spread " << spread << " sharp " << sharp);
+      // ka, kd and ks each reach the largest sample at most, and kd is for a light 75 degrees low.
+      CHECK(phong({0, 0, 1}, {0, 0, 1}) <= 2 * largest / std::cos(radians(75.0)));
+      CHECK(phong.ks <= 2.1 * largest);
+    }
+  }
+}
+
 TEST_CASE("Laplacian: each option for a weak point lowers the error, at the same bytes") {
   const auto btf = realistic_btf(16, "regular:4x8");
   const auto error = [&](const std::vector<std::string>& parameters) {
