@@ -21,7 +21,7 @@ paper_lambdas=(1 10)
 lights=(0,0 30,0 60,0)
 # The codecs' own ways, where they depart from the papers.
 lod_paper=(top=mean prediction=open)
-cmf_paper=(rank_one=plain refine=0 refit_scale=false levels=false)
+cmf_paper=(rank_one=plain refine=0 refit_scale=false levels=false rotate=false weighted=false)
 
 say() { echo "$*" >&2; }
 

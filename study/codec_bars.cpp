@@ -5,9 +5,10 @@
 namespace weft {
 
 std::span<const CodecVariant> factor_variants() {
-  static const std::array<CodecVariant, 13> variants{{
+  static const std::array<CodecVariant, 14> variants{{
       {"cmf", "cmf", {}},
       {"cmf float", "cmf", {"bits=float"}},
+      {"cmf not turned", "cmf", {"rotate=false"}},
       {"cmf unclustered", "cmf", {"clustered=false"}},
       {"cmf unclustered float", "cmf", {"clustered=false", "bits=float"}},
       {"hf", "hf", {}},

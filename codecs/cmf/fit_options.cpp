@@ -13,7 +13,7 @@ constexpr const char* four_factors = "light,half,difference,view";
 constexpr const char* three_factors = "light,half,view";
 constexpr const char* two_factors = "light,view";
 
-constexpr int refine_codebooks = 2;
+constexpr int refine_codebooks = 3;
 
 }  // namespace
 
@@ -53,7 +53,9 @@ FitOptions fit_options(const Settings& parameters) {
                        ? RankOne::plain
                        : RankOne::weighted;
   chain.refine = static_cast<int>(parameters.integer("refine", chain.refine, 0, 100000));
-  options.rotate = parameters.flag("rotate", options.rotate);
+  // What decodes fast when turned; and only what shares maps gains by it.
+  options.rotate = parameters.flag(
+      "rotate", options.storage.clustered && chain.half && !chain.difference && chain.terms == 1);
   parameters.finish();
   return options;
 }
@@ -67,8 +69,8 @@ std::string parameter_help() {
          "rank_one = weighted       error that light and view make least: that of B, as it is "
          "seen; plain: of f / Q (the paper)\n"
          "refine = 2                rounds that alternate over all factors after the chain\n"
-         "rotate = false            turn each ABRDF into its direction of greatest anisotropy "
-         "first\n"
+         "rotate = true             turn each ABRDF into its direction of greatest anisotropy "
+         "first; false where not clustered, of several terms or other factors\n"
          "terms = 1                 products added in each link of two factors, 1 to 8; below zero "
          "too with bits = float\n";
 }

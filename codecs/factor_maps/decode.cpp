@@ -1,148 +1,78 @@
 #include "codecs/factor_maps/decode.h"
 
-#ifdef __AVX2__
-#include <immintrin.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
+#include <utility>
 
 #include "btf/raw_appearance.h"
 #include "codecs/factor_maps/half_difference.h"
+#include "codecs/factor_maps/map_lookup.h"
 
 namespace weft::factor_maps {
 
 namespace {
 
-using Byte16 = std::uint8_t __attribute__((vector_size(16)));
-using Int8 = std::int32_t __attribute__((vector_size(32)));
-
-alignas(64) constexpr std::array<float, 16> left_weight{1, 1, 1, 0, 0, 0, 0, 0,
-                                                        0, 0, 1, 1, 1, 0, 0, 0};
-alignas(64) constexpr std::array<float, 16> right_minus_left{-1, -1, -1, 1,  1,  1, 0, 0,
-                                                             0,  0,  -1, -1, -1, 1, 1, 1};
-alignas(64) constexpr std::array<float, 16> upper_weight{1, 1, 1, 1, 1, 1, 1, 1,
-                                                         0, 0, 0, 0, 0, 0, 0, 0};
-alignas(64) constexpr std::array<float, 16> lower_minus_upper{-1, -1, -1, -1, -1, -1, -1, -1,
-                                                              1,  1,  1,  1,  1,  1,  1,  1};
-
-// The compiler's own conversion of vectors takes bytes apart in many steps: half of the decoder's
-// time.
-inline Vec16 floats_of(const Byte16& bytes) {
-#ifdef __AVX512F__
-  // Unmasked, GCC 12 takes its own header for uninitialised (its bug 105593).
-  using Int16 = std::int32_t __attribute__((vector_size(64)));
-  return __builtin_convertvector((Int16)_mm512_maskz_cvtepu8_epi32(0xFFFF, (__m128i)bytes), Vec16);
-#elif defined(__AVX2__)
-  const auto b = (__m128i)bytes;
-  return {(Vec8)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(b)),
-          (Vec8)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_unpackhi_epi64(b, b)))};
-#else
-  using Byte8 = std::uint8_t __attribute__((vector_size(8)));
-  std::array<Byte8, 2> halves;
-  std::memcpy(&halves, &bytes, sizeof halves);
-  const auto wide = [](const Byte8& half) {
-    return __builtin_convertvector(__builtin_convertvector(half, Int8), Vec8);
-  };
-  return {wide(halves[0]), wide(halves[1])};
-#endif
+// Which of `plane_images` a factor asks for.
+std::size_t image_of(Projection projection) {
+  switch (projection) {
+    case Projection::light:
+      return 0;
+    case Projection::half:
+      return 1;
+    case Projection::view:
+      return 2;
+    default:
+      return 3;
+  }
 }
 
-// Eight values from `row` on, of which six count, and eight that end with the six of the row below:
-// that way neither reads beyond the map.
-inline Vec16 two_rows(const std::uint8_t* row, std::size_t row_values) {
-  std::array<std::uint64_t, 2> rows;
-  std::memcpy(&rows[0], row, 8);
-  std::memcpy(&rows[1], row + row_values - 2, 8);
-  Byte16 bytes;
-  std::memcpy(&bytes, &rows, sizeof bytes);
-  return floats_of(bytes);
-}
-inline Vec16 two_rows(const float* row, std::size_t row_values) {
-  return joined(load<Vec8>(row), load<Vec8>(row + row_values - 2));
+Direction turned(const Direction& d, float cosine, float sine) {
+  return {cosine * d.x - sine * d.y, sine * d.x + cosine * d.y, d.z};
 }
 
-inline Vec4 low(const Vec8& v) {
-  Vec4 result;
-  std::memcpy(&result, &v, sizeof result);
-  return result;
+PlaneLanes direction_images(const DirectionLanes& d) {
+  PlaneLanes images;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    const float scale = 1 / (1 + d.z[i]);
+    images.x[i] = d.x[i] * scale;
+    images.y[i] = d.y[i] * scale;
+  }
+  return images;
 }
 
-// r g b: of each the two in the upper row, from 0 on, and the two in the lower row, from 10 on.
-inline Vec4 folded(const Vec16& v) {
-#ifdef __AVX512F__
-  using Int16 = std::int32_t __attribute__((vector_size(64)));
-  const Vec8 rows = low_half(
-      v + __builtin_shuffle(v, Int16{10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
-#else
-  const Vec8 rows = v.low + __builtin_shuffle(v.high, Int8{2, 3, 4, 5, 6, 7, 0, 1});
-#endif
-  return low(rows + __builtin_shuffle(rows, Int8{3, 4, 5, 6, 7, 0, 1, 2}));
+PlaneLanes half_images(const DirectionLanes& light, const DirectionLanes& view) {
+  PlaneLanes images;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    const float x = light.x[i] + view.x[i];
+    const float y = light.y[i] + view.y[i];
+    const float z = light.z[i] + view.z[i];
+    const float scale = 1 / (std::sqrt(x * x + y * y + z * z) + z);
+    images.x[i] = x * scale;
+    images.y[i] = y * scale;
+  }
+  return images;
 }
 
-template <typename Value>
-[[gnu::always_inline]] inline Vec4 blended(const Value* first, std::size_t row_values,
-                                           const Vec16& weight) {
-  return folded(two_rows(first, row_values) * weight);
-}
-
-template <typename Value>
-inline Vec4 looked_up(const Value* map, std::size_t row_values, const MapPlace& place) {
-  return blended(map + place.first, row_values, place.weight);
-}
-
-inline Vec16 blend_weights(float across, float down) {
-  return (load<Vec16>(left_weight.data()) + across * load<Vec16>(right_minus_left.data())) *
-         (load<Vec16>(upper_weight.data()) + down * load<Vec16>(lower_minus_upper.data()));
-}
-
-inline MapPlace map_place(int first, float across, float down) {
-  return {static_cast<std::uint32_t>(first), blend_weights(across, down)};
-}
-
-// p in the parabolic plane, `last` = resolution - 1. A NaN may not be cast; it stays in the
-// weights.
-inline MapPlace place_at(float px, float py, int resolution) {
-  const auto last = static_cast<float>(resolution - 1);
-  const float x = std::clamp((px + 1) * 0.5F * last, 0.0F, last);
-  const float y = std::clamp((1 - py) * 0.5F * last, 0.0F, last);
-  const int column = x > 0 ? std::min(static_cast<int>(x), resolution - 2) : 0;
-  const int row = y > 0 ? std::min(static_cast<int>(y), resolution - 2) : 0;
-  return map_place(3 * (row * resolution + column), x - static_cast<float>(column),
-                   y - static_cast<float>(row));
-}
-
-// The parabolic image of the half-vector, without normalising it first.
-inline MapPlace half_place(const Direction& light, const Direction& view, int resolution) {
-  const Vec3 sum = light + view;
-  const float scale = 1 / (std::sqrt(sum ^ sum) + sum.z);
-  return place_at(sum.x * scale, sum.y * scale, resolution);
-}
-
-inline MapPlace place_of(const Direction& d, int resolution) {
-  const float scale = 1 / (1 + d.z);
-  return place_at(d.x * scale, d.y * scale, resolution);
-}
-
-struct Turn {
-  float cosine;
-  float sine;
-};
-
-Turn turn_back(int steps) {
-  const double angle = -2 * std::numbers::pi * steps / rotation_steps;
-  return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
-}
-
-Direction turned(const Direction& d, const Turn& turn) {
-  return {turn.cosine * d.x - turn.sine * d.y, turn.sine * d.x + turn.cosine * d.y, d.z};
+PlaneLanes difference_images(const DirectionLanes& light, const DirectionLanes& view) {
+  DirectionLanes difference;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    const Direction d =
+        difference_vector({light.x[i], light.y[i], light.z[i]}, {view.x[i], view.y[i], view.z[i]});
+    difference.x[i] = d.x;
+    difference.y[i] = d.y;
+    difference.z[i] = d.z;
+  }
+  return direction_images(difference);
 }
 
 }  // namespace
 
-Decoder::Decoder(const Model& model) : model_(model), map_values_(model.values_a_map()) {
+Decoder::Decoder(const Model& model)
+    : model_(model),
+      map_values_(model.values_a_map()),
+      row_values_(3 * static_cast<std::size_t>(model.resolution)),
+      texels_(model.texels()) {
   float unit = 1;
   for (std::size_t f = 0; f < model.factors.size(); ++f) {
     const Factor& factor = model.factors[f];
@@ -150,38 +80,32 @@ Decoder::Decoder(const Model& model) : model_(model), map_values_(model.values_a
     bytes_[f] = factor.maps.bytes.data();
     floats_[f] = factor.maps.floats.data();
     if (factor.maps.floats.empty()) unit /= 255.0F;
+    has_difference_ = has_difference_ || factor.projection == Projection::difference;
   }
   plain_ =
       single_terms_ && model.factors.size() == 3 && model.factors[1].projection == Projection::half;
-  texels_.resize(model.texels());
+  for (int step = 0; step < rotation_steps; ++step) {
+    const double angle = -2 * std::numbers::pi * step / rotation_steps;
+    cosine_[step] = static_cast<float>(std::cos(angle));
+    sine_[step] = static_cast<float>(std::sin(angle));
+  }
   for (std::size_t t = 0; t < texels_.size(); ++t) {
     const Rgb scale = (model.scale.size() > 0 ? model.scale_of(t) : Rgb(1, 1, 1)) * unit;
     texels_[t].scale = Vec4{scale.x, scale.y, scale.z, 0};
-    for (std::size_t f = 0; f < model.factors.size(); ++f) {
-      texels_[t].map[f] = static_cast<std::uint32_t>(model.map_of(f, t));
-    }
+    texels_[t].cosine = model.rotation.empty() ? 1 : cosine_[model.rotation[t]];
+    texels_[t].sine = model.rotation.empty() ? 0 : sine_[model.rotation[t]];
+    for (std::size_t f = 0; f < model.factors.size(); ++f)
+      texels_[t].map[f] = model.map_of(f, t) * model.factors[f].terms * map_values_;
   }
 }
 
 template <typename Value>
-[[gnu::always_inline]] inline Vec4 Decoder::product(const Value* const* maps, const Texel& texel,
-                                                    const MapPlaces& places) const {
-  const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
-  const auto own = [&](std::size_t f) {
-    return looked_up(maps[f] + texel.map[f] * map_values_, row_values, places[f]);
-  };
-  if (plain_) return texel.scale * own(0) * own(1) * own(2);
-  return product_of_links(maps, texel, places);
-}
-
-template <typename Value>
-Vec4 Decoder::product_of_links(const Value* const* maps, const Texel& texel,
-                               const MapPlaces& places) const {
-  const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
+Vec4 Decoder::product(const Value* const* maps, const Texel& texel, const MapPlaces& places) const {
   Vec4 result = texel.scale;
   if (single_terms_) {
     for (std::size_t f = 0; f < model_.factors.size(); ++f)
-      result *= looked_up(maps[f] + texel.map[f] * map_values_, row_values, places[f]);
+      result *= looked_up(maps[f] + texel.map[f] + places[f].first, row_values_, places[f].across,
+                          places[f].down);
     return result;
   }
   for (int link = 0; link < link_count; ++link) {
@@ -193,8 +117,8 @@ Vec4 Decoder::product_of_links(const Value* const* maps, const Texel& texel,
       for (std::size_t f = 0; f < model_.factors.size(); ++f) {
         const Factor& factor = model_.factors[f];
         if (link_of(factor.projection) != link || term >= factor.terms) continue;
-        const std::size_t map = static_cast<std::size_t>(texel.map[f]) * factor.terms + term;
-        one *= looked_up(maps[f] + map * map_values_, row_values, places[f]);
+        one *= looked_up(maps[f] + texel.map[f] + term * map_values_ + places[f].first, row_values_,
+                         places[f].across, places[f].down);
         has_term = true;
       }
       if (!has_term) break;
@@ -208,131 +132,124 @@ Vec4 Decoder::product_of_links(const Value* const* maps, const Texel& texel,
   return result;
 }
 
-[[gnu::always_inline]] inline Vec4 Decoder::value4(std::size_t texel,
-                                                   const MapPlaces& places) const {
+Vec4 Decoder::texel_value(std::size_t texel, const MapPlaces& places) const {
   return bytes_[0] != nullptr ? product(bytes_.data(), texels_[texel], places)
                               : product(floats_.data(), texels_[texel], places);
 }
 
 Rgb Decoder::value(std::size_t texel, const MapPlaces& places) const {
-  const Vec4 v = value4(texel, places);
+  const Vec4 v = texel_value(texel, places);
   return {v[0], v[1], v[2]};
+}
+
+/// Of four texels.
+/// @param texels   (t) to the texel and its weight.
+/// @param look_up  (map, factor, t) to the factor's value there.
+template <typename Texels, typename LookUp>
+[[gnu::always_inline]] inline Vec4 Decoder::plain_sum(const Texels& texels,
+                                                      const LookUp& look_up) const {
+  const auto sum_in = [&](const auto& maps) {
+    Vec4 sum{};
+    for (std::size_t t = 0; t < 4; ++t) {
+      const auto [index, weight] = texels(t);
+      const Texel& texel = texels_[index];
+      Vec4 product = texel.scale * weight;
+      for (std::size_t f = 0; f < 3; ++f) product *= look_up(maps[f] + texel.map[f], f, t);
+      sum += product;
+    }
+    return sum;
+  };
+  return bytes_[0] != nullptr ? sum_in(bytes_) : sum_in(floats_);
 }
 
 MapPlaces Decoder::places(const Direction& light_asked, const Direction& view_asked,
                           int rotation) const {
-  Direction light = light_asked;
-  Direction view = view_asked;
-  if (rotation != 0) {
-    const Turn turn = turn_back(rotation);
-    light = turned(light, turn);
-    view = turned(view, turn);
-  }
+  const Direction light = turned(light_asked, cosine_[rotation], sine_[rotation]);
+  const Direction view = turned(view_asked, cosine_[rotation], sine_[rotation]);
+  const PlaneQuad images = has_difference_
+                               ? plane_images(light, view, difference_vector(light, view))
+                               : plane_images(light, view);
+  const std::array<MapPlace, 4> all = map_places(images, model_.resolution);
   MapPlaces places;
-  if (plain_) {
-    places[0] = place_of(light, model_.resolution);
-    places[1] = half_place(light, view, model_.resolution);
-    places[2] = place_of(view, model_.resolution);
-    return places;
-  }
-  for (std::size_t f = 0; f < model_.factors.size(); ++f) {
-    switch (model_.factors[f].projection) {
-      case Projection::light:
-        places[f] = place_of(light, model_.resolution);
-        break;
-      case Projection::half:
-        places[f] = half_place(light, view, model_.resolution);
-        break;
-      case Projection::difference:
-        places[f] = place_of(difference_vector(light, view), model_.resolution);
-        break;
-      case Projection::view:
-        places[f] = place_of(view, model_.resolution);
-        break;
-    }
-  }
+  for (std::size_t f = 0; f < model_.factors.size(); ++f)
+    places[f] = all[image_of(model_.factors[f].projection)];
   return places;
 }
 
-Rgb Decoder::level_value(const Level& level, const Texcoord& uv, const Direction& light,
-                         const Direction& view, const MapPlaces& places) const {
-  const TexelStencil texels = bilinear_texels(uv, level.width, level.height);
-  Vec4 sum = {};
-  for (std::size_t t = 0; t < 4; ++t) {
-    if (texels.weight[t] == 0) continue;
-    const std::size_t texel = level.first + texels.index[t];
-    const Vec4 value = model_.rotation.empty()
-                           ? value4(texel, places)
-                           : value4(texel, this->places(light, view, model_.rotation[texel]));
-    sum += value * texels.weight[t];
+Vec4 Decoder::level_value(const Level& level, const Texcoord& uv, const MapPlaces& places) const {
+  const TexelStencil stencil = bilinear_texels(uv, level.width, level.height);
+  if (!plain_) {
+    Vec4 sum{};
+    for (std::size_t t = 0; t < 4; ++t)
+      sum += texel_value(level.first + stencil.index[t], places) * stencil.weight[t];
+    return sum;
   }
-  return Rgb(sum[0], sum[1], sum[2]) * light.z;
+  return plain_sum(
+      [&](std::size_t t) { return std::pair(level.first + stencil.index[t], stencil.weight[t]); },
+      [&](const auto* map, std::size_t f, std::size_t) {
+        return looked_up(map + places[f].first, row_values_, places[f].across, places[f].down);
+      });
+}
+
+Vec4 Decoder::turned_level_value(const Level& level, const Texcoord& uv, const Direction& light,
+                                 const Direction& view) const {
+  const TexelStencil stencil = bilinear_texels(uv, level.width, level.height);
+  if (!plain_) {
+    Vec4 sum{};
+    for (std::size_t t = 0; t < 4; ++t) {
+      const std::size_t texel = level.first + stencil.index[t];
+      sum += texel_value(texel, places(light, view, model_.rotation[texel])) * stencil.weight[t];
+    }
+    return sum;
+  }
+  // Turning a direction about the normal turns its image, and half-vectors turn with their pair.
+  Vec4 cosine;
+  Vec4 sine;
+  for (std::size_t t = 0; t < 4; ++t) {
+    const std::uint8_t rotation = model_.rotation[level.first + stencil.index[t]];
+    cosine[t] = cosine_[rotation];
+    sine[t] = sine_[rotation];
+  }
+  const PlaneQuad images = plane_images(light, view);
+  std::array<std::array<MapPlace, 4>, 3> places;
+  for (std::size_t f = 0; f < 3; ++f) {
+    const PlaneQuad turned{cosine * images.x[f] - sine * images.y[f],
+                           sine * images.x[f] + cosine * images.y[f]};
+    places[f] = map_places(turned, model_.resolution);
+  }
+  return plain_sum(
+      [&](std::size_t t) { return std::pair(level.first + stencil.index[t], stencil.weight[t]); },
+      [&](const auto* map, std::size_t f, std::size_t t) {
+        const MapPlace& place = places[f][t];
+        return looked_up(map + place.first, row_values_, place.across, place.down);
+      });
 }
 
 Rgb Decoder::evaluate(const Texcoord& uv, const Direction& light, const Direction& view,
                       float lod) const {
   if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
-  const MapPlaces shared = places(light, view, 0);
   const auto last = static_cast<float>(model_.levels.size() - 1);
   const float level = lod > 0 ? std::min(lod, last) : 0;  // a NaN is level 0
   const auto fine = static_cast<std::size_t>(level);
   const float blend = level - static_cast<float>(fine);
-  const Rgb value = level_value(model_.levels[fine], uv, light, view, shared);
-  if (!(blend > 0)) return value;
-  const Rgb coarse = level_value(model_.levels[fine + 1], uv, light, view, shared);
-  return value * (1 - blend) + coarse * blend;
-}
-
-namespace {
-
-// A NaN (the half of opposite directions on the horizon) lies at 0: of std::max, the first stays.
-PlaceLanes place_lanes(const Batch<float>& px, const Batch<float>& py, int resolution) {
-  const auto last = static_cast<float>(resolution - 1);
-  PlaceLanes places;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    const float x = std::min(std::max(0.0F, (px[i] + 1) * 0.5F * last), last);
-    const float y = std::min(std::max(0.0F, (1 - py[i]) * 0.5F * last), last);
-    const int column = std::min(static_cast<int>(x), resolution - 2);
-    const int row = std::min(static_cast<int>(y), resolution - 2);
-    places.first[i] = 3 * (row * resolution + column);
-    places.across[i] = x - static_cast<float>(column);
-    places.down[i] = y - static_cast<float>(row);
+  const auto blended = [&](const auto& value_of) {
+    const Vec4 value = value_of(model_.levels[fine]);
+    if (!(blend > 0)) return value;
+    return value * (1 - blend) + value_of(model_.levels[fine + 1]) * blend;
+  };
+  Vec4 value;
+  if (model_.rotation.empty()) {
+    const MapPlaces shared = places(light, view, 0);
+    value = blended([&](const Level& of) { return level_value(of, uv, shared); });
+  } else {
+    value = blended([&](const Level& of) { return turned_level_value(of, uv, light, view); });
   }
-  return places;
+  return Rgb(value[0], value[1], value[2]) * light.z;
 }
-
-// Of directions.
-PlaceLanes place_lanes(const DirectionLanes& d, int resolution) {
-  alignas(64) Batch<float> px;
-  alignas(64) Batch<float> py;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    const float scale = 1 / (1 + d.z[i]);
-    px[i] = d.x[i] * scale;
-    py[i] = d.y[i] * scale;
-  }
-  return place_lanes(px, py, resolution);
-}
-
-// Of the half-vectors of pairs of them.
-PlaceLanes half_lanes(const DirectionLanes& light, const DirectionLanes& view, int resolution) {
-  alignas(64) Batch<float> px;
-  alignas(64) Batch<float> py;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    const float x = light.x[i] + view.x[i];
-    const float y = light.y[i] + view.y[i];
-    const float z = light.z[i] + view.z[i];
-    const float scale = 1 / (std::sqrt(x * x + y * y + z * z) + z);
-    px[i] = x * scale;
-    py[i] = y * scale;
-  }
-  return place_lanes(px, py, resolution);
-}
-
-}  // namespace
 
 void Decoder::evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const {
-  // What turns directions goes one by one.
-  if (!model_.rotation.empty()) {
+  // Several terms, or a difference, of turned texels are seldom asked for: one by one.
+  if (!model_.rotation.empty() && !plain_) {
     for (std::size_t i = 0; i < queries.size(); ++i)
       answers[i] = evaluate(queries[i].uv, queries[i].light, queries[i].view, queries[i].lod);
     return;
@@ -340,50 +257,51 @@ void Decoder::evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> 
   decode_in_batches(queries, answers, [this](const QueryBatch& batch) { return decode(batch); });
 }
 
-std::array<PlaceLanes, max_factors> Decoder::places(const QueryBatch& batch) const {
-  std::array<PlaceLanes, max_factors> places;
+std::array<PlaneLanes, max_factors> Decoder::images(const QueryBatch& batch) const {
+  std::array<PlaneLanes, max_factors> images;
   for (std::size_t f = 0; f < model_.factors.size(); ++f) {
     switch (model_.factors[f].projection) {
       case Projection::light:
-        places[f] = place_lanes(batch.light, model_.resolution);
+        images[f] = direction_images(batch.light);
         break;
       case Projection::half:
-        places[f] = half_lanes(batch.light, batch.view, model_.resolution);
+        images[f] = half_images(batch.light, batch.view);
         break;
-      case Projection::difference: {
-        DirectionLanes difference;
-        for (std::size_t i = 0; i < batch_lanes; ++i) {
-          const Direction d =
-              difference_vector({batch.light.x[i], batch.light.y[i], batch.light.z[i]},
-                                {batch.view.x[i], batch.view.y[i], batch.view.z[i]});
-          difference.x[i] = d.x;
-          difference.y[i] = d.y;
-          difference.z[i] = d.z;
-        }
-        places[f] = place_lanes(difference, model_.resolution);
+      case Projection::difference:
+        images[f] = difference_images(batch.light, batch.view);
         break;
-      }
       case Projection::view:
-        places[f] = place_lanes(batch.view, model_.resolution);
+        images[f] = direction_images(batch.view);
         break;
     }
   }
-  return places;
+  return images;
 }
 
 // The four texels around uv at each lane's level, weights times `share`.
 TexelBatch Decoder::level_texels(const QueryBatch& batch, const Batch<std::int32_t>& levels,
                                  const Batch<float>& share) const {
-  Batch<std::int32_t> width;
-  Batch<std::int32_t> height;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    width[i] = model_.levels[levels[i]].width;
-    height[i] = model_.levels[levels[i]].height;
+  alignas(64) Batch<std::int32_t> width;
+  alignas(64) Batch<std::int32_t> height;
+  alignas(64) Batch<std::int32_t> first;
+  const bool is_one_level = std::ranges::all_of(levels, [&](int l) { return l == levels[0]; });
+  if (is_one_level) {
+    const Level& level = model_.levels[levels[0]];
+    width.fill(level.width);
+    height.fill(level.height);
+    first.fill(static_cast<std::int32_t>(level.first));
+  } else {
+    for (std::size_t i = 0; i < batch_lanes; ++i) {
+      const Level& level = model_.levels[levels[i]];
+      width[i] = level.width;
+      height[i] = level.height;
+      first[i] = static_cast<std::int32_t>(level.first);
+    }
   }
   TexelBatch texels = texel_batch(column_batch(batch.u, width), row_batch(batch.v, height), width);
   for (std::size_t t = 0; t < 4; ++t) {
     for (std::size_t i = 0; i < batch_lanes; ++i) {
-      texels.index[t][i] += static_cast<std::int32_t>(model_.levels[levels[i]].first);
+      texels.index[t][i] += first[i];
       texels.weight[t][i] *= share[i];
     }
   }
@@ -394,52 +312,75 @@ Batch<Rgb> Decoder::decode(const QueryBatch& batch) const {
   const LevelBatch level = level_batch(batch.lod, model_.levels.size());
   alignas(64) Batch<float> rest;
   for (std::size_t i = 0; i < batch_lanes; ++i) rest[i] = 1 - level.blend[i];
-  const std::array<PlaceLanes, max_factors> places = this->places(batch);
+  const std::array<PlaneLanes, max_factors> images = this->images(batch);
   Batch<Vec4> sums{};
-  add_level(level_texels(batch, level.fine, rest), places, sums);
-  if (std::ranges::max(level.blend) > 0)
-    add_level(level_texels(batch, level.coarse, level.blend), places, sums);
+  const auto add = [&](const TexelBatch& texels) {
+    return model_.rotation.empty() ? add_level(texels, images, sums)
+                                   : add_turned_level(texels, images, sums);
+  };
+  add(level_texels(batch, level.fine, rest));
+  if (std::ranges::max(level.blend) > 0) add(level_texels(batch, level.coarse, level.blend));
   Batch<Rgb> values;
   for (std::size_t i = 0; i < batch_lanes; ++i)
     values[i] = Rgb(sums[i][0], sums[i][1], sums[i][2]) * batch.light.z[i];
   return values;
 }
 
-void Decoder::add_level(const TexelBatch& texels, const std::array<PlaceLanes, max_factors>& places,
+void Decoder::add_level(const TexelBatch& texels, const std::array<PlaneLanes, max_factors>& images,
                         Batch<Vec4>& sums) const {
-  if (plain_) {
-    return bytes_[0] != nullptr ? add_plain(bytes_.data(), texels, places, sums)
-                                : add_plain(floats_.data(), texels, places, sums);
-  }
+  std::array<PlaceLanes, max_factors> places;
+  for (std::size_t f = 0; f < model_.factors.size(); ++f)
+    places[f] = place_lanes(images[f], model_.resolution);
   for (std::size_t i = 0; i < batch_lanes; ++i) {
-    MapPlaces of_lane;
-    for (std::size_t f = 0; f < model_.factors.size(); ++f)
-      of_lane[f] = map_place(places[f].first[i], places[f].across[i], places[f].down[i]);
-    for (std::size_t t = 0; t < 4; ++t)
-      sums[i] += value4(texels.index[t][i], of_lane) * texels.weight[t][i];
-  }
-}
-
-template <typename Value>
-void Decoder::add_plain(const Value* const* maps, const TexelBatch& texels,
-                        const std::array<PlaceLanes, max_factors>& places,
-                        Batch<Vec4>& sums) const {
-  const std::size_t row_values = 3 * static_cast<std::size_t>(model_.resolution);
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    if (!plain_) {
+      MapPlaces of_lane;
+      for (std::size_t f = 0; f < model_.factors.size(); ++f) of_lane[f] = places[f].lane(i);
+      for (std::size_t t = 0; t < 4; ++t)
+        sums[i] += texel_value(texels.index[t][i], of_lane) * texels.weight[t][i];
+      continue;
+    }
     std::array<Vec16, 3> weight;
     for (std::size_t f = 0; f < 3; ++f)
       weight[f] = blend_weights(places[f].across[i], places[f].down[i]);
-    Vec4 sum = sums[i];
-    for (std::size_t t = 0; t < 4; ++t) {
+    sums[i] +=
+        plain_sum([&](std::size_t t) { return std::pair(texels.index[t][i], texels.weight[t][i]); },
+                  [&](const auto* map, std::size_t f, std::size_t) {
+                    return looked_up(map + places[f].first[i], row_values_, weight[f]);
+                  });
+  }
+}
+
+// Of plain ones. The first texels of all sixteen, then the
+// second ones: what is found side by side is not asked for again at once, while it is still being
+// stored.
+void Decoder::add_turned_level(const TexelBatch& texels,
+                               const std::array<PlaneLanes, max_factors>& images,
+                               Batch<Vec4>& sums) const {
+  std::array<std::array<PlaceLanes, 3>, 4> places;
+  for (std::size_t t = 0; t < 4; ++t) {
+    alignas(64) Batch<float> cosine;
+    alignas(64) Batch<float> sine;
+    for (std::size_t i = 0; i < batch_lanes; ++i) {
       const Texel& texel = texels_[texels.index[t][i]];
-      Vec4 product = texel.scale * texels.weight[t][i];
-      for (std::size_t f = 0; f < 3; ++f) {
-        product *= blended(maps[f] + texel.map[f] * map_values_ + places[f].first[i], row_values,
-                           weight[f]);
-      }
-      sum += product;
+      cosine[i] = texel.cosine;
+      sine[i] = texel.sine;
     }
-    sums[i] = sum;
+    for (std::size_t f = 0; f < 3; ++f) {
+      PlaneLanes turned;
+      for (std::size_t i = 0; i < batch_lanes; ++i) {
+        turned.x[i] = cosine[i] * images[f].x[i] - sine[i] * images[f].y[i];
+        turned.y[i] = sine[i] * images[f].x[i] + cosine[i] * images[f].y[i];
+      }
+      places[t][f] = place_lanes(turned, model_.resolution);
+    }
+  }
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    sums[i] +=
+        plain_sum([&](std::size_t t) { return std::pair(texels.index[t][i], texels.weight[t][i]); },
+                  [&](const auto* map, std::size_t f, std::size_t t) {
+                    const MapPlace place = places[t][f].lane(i);
+                    return looked_up(map + place.first, row_values_, place.across, place.down);
+                  });
   }
 }
 

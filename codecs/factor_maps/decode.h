@@ -1,9 +1,8 @@
 // From a model to values: bilinear lookups in the maps of the four texels around uv, multiplied.
 //
-// A lookup of three channels in two by two neighbouring texels of a map is one vector of sixteen
-// floats: two loads, one multiplication and two folds. What does not depend
-// on the texel (where the directions lie in the maps) is reckoned once a query, and for sixteen
-// queries at a time where many are asked.
+// What does not depend on the texel (where the directions lie in the maps) is reckoned once a
+// query, and for sixteen queries at a time where many are asked; where texels are turned, for the
+// four of them side by side.
 #pragma once
 
 #include <array>
@@ -12,27 +11,15 @@
 #include <vector>
 
 #include "btf/appearance.h"
+#include "codecs/factor_maps/map_places.h"
 #include "codecs/factor_maps/model.h"
 #include "codecs/stencil_batch.h"
 #include "codecs/wide_vector.h"
 
 namespace weft::factor_maps {
 
-/// Where a direction lies in a map: the upper left of its four texels, and how they blend.
-struct MapPlace {
-  std::uint32_t first;  ///< of the map's values, that texel's red
-  Vec16 weight;         ///< of r g b r g b and two unused values from `first` on, and of two unused
-                        ///< ones and r g b r g b of the row below
-};
-/// Only those of the model's factors are set.
+/// By factor; only those of the model's are set.
 using MapPlaces = std::array<MapPlace, max_factors>;
-
-/// Where sixteen directions lie in a map, before their weights are spread.
-struct PlaceLanes {
-  alignas(64) Batch<std::int32_t> first;
-  alignas(64) Batch<float> across;
-  alignas(64) Batch<float> down;
-};
 
 /// Decodes one model, which must outlive it and keep its arrays where they are.
 class Decoder {
@@ -48,36 +35,42 @@ class Decoder {
   void evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
 
  private:
-  /// What a texel knows: its maps, and its scale with the bytes' 1 / 255 in it.
+  /// What a texel knows: its scale with the bytes' 1 / 255 in it, and its maps' first values.
   struct Texel {
     Vec4 scale;
-    std::array<std::uint32_t, max_factors> map;
+    std::array<std::size_t, max_factors> map;
+    float cosine;
+    float sine;
   };
   template <typename Value>
   Vec4 product(const Value* const* maps, const Texel& texel, const MapPlaces& places) const;
-  template <typename Value>
-  Vec4 product_of_links(const Value* const* maps, const Texel& texel,
-                        const MapPlaces& places) const;
-  Vec4 value4(std::size_t texel, const MapPlaces& places) const;
-  Rgb level_value(const Level& level, const Texcoord& uv, const Direction& light,
-                  const Direction& view, const MapPlaces& places) const;
-  std::array<PlaceLanes, max_factors> places(const QueryBatch& batch) const;
+  Vec4 texel_value(std::size_t texel, const MapPlaces& places) const;
+  template <typename Texels, typename LookUp>
+  Vec4 plain_sum(const Texels& texels, const LookUp& look_up) const;
+  Vec4 level_value(const Level& level, const Texcoord& uv, const MapPlaces& places) const;
+  Vec4 turned_level_value(const Level& level, const Texcoord& uv, const Direction& light,
+                          const Direction& view) const;
+
+  std::array<PlaneLanes, max_factors> images(const QueryBatch& batch) const;
   TexelBatch level_texels(const QueryBatch& batch, const Batch<std::int32_t>& levels,
                           const Batch<float>& share) const;
-  void add_level(const TexelBatch& texels, const std::array<PlaceLanes, max_factors>& places,
+  void add_level(const TexelBatch& texels, const std::array<PlaneLanes, max_factors>& images,
                  Batch<Vec4>& sums) const;
-  template <typename Value>
-  void add_plain(const Value* const* maps, const TexelBatch& texels,
-                 const std::array<PlaceLanes, max_factors>& places, Batch<Vec4>& sums) const;
+  void add_turned_level(const TexelBatch& texels, const std::array<PlaneLanes, max_factors>& images,
+                        Batch<Vec4>& sums) const;
   Batch<Rgb> decode(const QueryBatch& batch) const;
 
   const Model& model_;
   bool single_terms_ = true;
-  bool plain_ = false;          // light, half, view of one term: asked for most, and written out
+  bool plain_ = false;  // light, half, view of one term: asked for most, and written out
+  bool has_difference_ = false;
   std::size_t map_values_ = 0;  // of one term
+  std::size_t row_values_ = 0;  // of a map
   std::array<const std::uint8_t*, max_factors> bytes_{};
   std::array<const float*, max_factors> floats_{};
   std::vector<Texel> texels_;
+  std::array<float, rotation_steps> cosine_{};  // of turning back
+  std::array<float, rotation_steps> sine_{};
 };
 
 }  // namespace weft::factor_maps

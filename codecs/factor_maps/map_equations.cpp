@@ -1,128 +1,124 @@
 #include "codecs/factor_maps/map_equations.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
-#include <numeric>
 
 namespace weft::factor_maps {
 
 namespace {
 
+using Eigen::Index;
+
 constexpr int max_iterations = 40;
 constexpr int max_rounds = 4;
 constexpr double tolerance = 1e-4;  // of the residual's length
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
 }  // namespace
 
 MapEquations::MapEquations(int resolution, double smoothness)
-    : resolution_(resolution),
-      smoothness_(smoothness),
-      own_(static_cast<std::size_t>(resolution) * resolution),
-      right_(own_.size()),
-      below_left_(own_.size()),
-      below_(own_.size()),
-      below_right_(own_.size()),
-      residual_(own_.size()) {}
-
-void MapEquations::add(const BilinearTaps& taps, double weight, double residual) {
-  const auto& [a, b, c, d] = taps.index;  // upper left, upper right, lower left, lower right
-  const std::array<double, 4> w{taps.weight[0], taps.weight[1], taps.weight[2], taps.weight[3]};
-  for (std::size_t k = 0; k < 4; ++k) {
-    own_[taps.index[k]] += weight * w[k] * w[k];
-    residual_[taps.index[k]] += w[k] * residual;
-  }
-  right_[a] += weight * w[0] * w[1];
-  right_[c] += weight * w[2] * w[3];
-  below_[a] += weight * w[0] * w[2];
-  below_[b] += weight * w[1] * w[3];
-  below_right_[a] += weight * w[0] * w[3];
-  below_left_[b] += weight * w[1] * w[2];
+    : resolution_(resolution), stride_(resolution + 1), smoothness_(smoothness) {
+  const Values zeros = Values::Zero((resolution_ + 2) * stride_ + 1);
+  matrix_ = {zeros, zeros, zeros, zeros, zeros};
+  residual_ = zeros;
 }
 
-std::vector<double> MapEquations::times(const std::vector<double>& x, double mu) const {
-  std::vector<double> y(x.size());
-  const auto n = static_cast<std::size_t>(resolution_);
-  const auto join = [&](std::size_t i, std::size_t j, double entry) {
-    y[i] += entry * x[j] + mu * (x[i] - x[j]);
-    y[j] += entry * x[i] + mu * (x[j] - x[i]);
-  };
-  for (std::size_t row = 0; row < n; ++row) {
-    for (std::size_t i = row * n; i < (row + 1) * n; ++i) {
-      y[i] += own_[i] * x[i];
-      const bool last_column = i + 1 == (row + 1) * n;
-      if (!last_column) join(i, i + 1, right_[i]);
-      if (row + 1 == n) continue;
-      join(i, i + n, below_[i]);
-      if (!last_column) {
-        y[i] += below_right_[i] * x[i + n + 1];
-        y[i + n + 1] += below_right_[i] * x[i];
-      }
-      if (i > row * n) {
-        y[i] += below_left_[i] * x[i + n - 1];
-        y[i + n - 1] += below_left_[i] * x[i];
-      }
-    }
+// One column of zeros between rows, a row of them above and below.
+Index MapEquations::place(Index texel) const {
+  return (texel / resolution_ + 1) * stride_ + texel % resolution_ + 1;
+}
+
+void MapEquations::add(const BilinearTaps& taps, double weight, double residual) {
+  const Index a = place(taps.index[0]);
+  const std::array<Index, 4> places{a, a + 1, a + stride_, a + stride_ + 1};
+  const std::array<double, 4> w{taps.weight[0], taps.weight[1], taps.weight[2], taps.weight[3]};
+  for (std::size_t k = 0; k < 4; ++k) {
+    matrix_.own[places[k]] += weight * w[k] * w[k];
+    residual_[places[k]] += w[k] * residual;
   }
+  matrix_.right[places[0]] += weight * w[0] * w[1];
+  matrix_.right[places[2]] += weight * w[2] * w[3];
+  matrix_.below[places[0]] += weight * w[0] * w[2];
+  matrix_.below[places[1]] += weight * w[1] * w[3];
+  matrix_.below_right[places[0]] += weight * w[0] * w[3];
+  matrix_.below_left[places[1]] += weight * w[1] * w[2];
+}
+
+MapEquations::Values MapEquations::times(const Matrix& matrix, const Values& x) const {
+  Values y = Values::Zero(x.size());
+  const Index first = stride_ + 1;
+  const Index count = x.size() - 2 * first;
+  const auto there = [&](const Values& v, Index offset) {
+    return v.segment(first + offset, count);
+  };
+  const auto both = [&](const Values& entries, Index offset) {
+    return there(entries, 0) * there(x, offset) + there(entries, -offset) * there(x, -offset);
+  };
+  y.segment(first, count) = there(matrix.own, 0) * there(x, 0) + both(matrix.right, 1) +
+                            both(matrix.below_left, stride_ - 1) + both(matrix.below, stride_) +
+                            both(matrix.below_right, stride_ + 1);
   return y;
 }
 
-// From `start` on; what is held stays as it is there.
-std::vector<double> MapEquations::change(const std::vector<double>& start,
-                                         const std::vector<bool>& held, double mu) const {
-  const auto preconditioned = [&](const std::vector<double>& r) {
-    std::vector<double> z(r.size());
-    for (std::size_t i = 0; i < r.size(); ++i) z[i] = held[i] ? 0 : r[i] / (own_[i] + 4 * mu);
-    return z;
+// With mu times the squared differences between neighbours.
+MapEquations::Matrix MapEquations::smoothed(double mu) const {
+  Matrix matrix = matrix_;
+  const auto join = [&](Values& entries, Index texel, Index other) {
+    matrix.own[place(texel)] += mu;
+    matrix.own[place(other)] += mu;
+    entries[place(texel)] -= mu;
   };
-  std::vector<double> x = start;
-  std::vector<double> r = times(x, mu);
-  for (std::size_t i = 0; i < r.size(); ++i) r[i] = residual_[i] - r[i];
-  std::vector<double> z = preconditioned(r);
-  std::vector<double> p = z;
-  double rz = dot(r, z);
+  for (Index texel = 0; texel < resolution_ * resolution_; ++texel) {
+    if (texel % resolution_ + 1 < resolution_) join(matrix.right, texel, texel + 1);
+    if (texel / resolution_ + 1 < resolution_) join(matrix.below, texel, texel + resolution_);
+  }
+  return matrix;
+}
+
+// From `start` on, where `free` is 1; what is held, where it is 0, stays as it is there.
+MapEquations::Values MapEquations::change(const Matrix& matrix, const Values& start,
+                                          const Values& free) const {
+  const Values inverse = free * (matrix.own > 0).select(1 / matrix.own, 0.0);
+  Values x = start;
+  Values r = residual_ - times(matrix, x);
+  Values z = inverse * r;
+  Values p = z;
+  double rz = (r * z).sum();
   const double enough = tolerance * tolerance * rz;
   for (int iteration = 0; iteration < max_iterations && rz > enough; ++iteration) {
-    const std::vector<double> ap = times(p, mu);
-    const double step = rz / dot(p, ap);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] += step * p[i];
-      r[i] -= step * ap[i];
-    }
-    z = preconditioned(r);
-    const double next = dot(r, z);
-    for (std::size_t i = 0; i < p.size(); ++i) p[i] = z[i] + next / rz * p[i];
+    const Values ap = times(matrix, p);
+    const double step = rz / (p * ap).sum();
+    x += step * p;
+    r -= step * ap;
+    z = inverse * r;
+    const double next = (r * z).sum();
+    p = z + next / rz * p;
     rz = next;
   }
   return x;
 }
 
 std::vector<double> MapEquations::solved(const std::vector<double>& map) const {
-  const double trace = std::accumulate(own_.begin(), own_.end(), 0.0);
-  const double mu = smoothness_ * trace / static_cast<double>(own_.size());
+  const double mu = smoothness_ * matrix_.own.sum() / static_cast<double>(map.size());
   if (!(mu > 0)) return map;
-  std::vector<double> x(map.size());
-  std::vector<bool> held(map.size());
+  const Matrix matrix = smoothed(mu);
+  Values now = Values::Zero(residual_.size());
+  for (std::size_t t = 0; t < map.size(); ++t) now[place(static_cast<Index>(t))] = map[t];
+  Values x = Values::Zero(residual_.size());
+  Values free = Values::Ones(residual_.size());
   for (int round = 0; round < max_rounds; ++round) {
-    x = change(x, held, mu);
-    bool below = false;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      if (held[i] || map[i] + x[i] >= 0) continue;
-      x[i] = -map[i];
-      held[i] = true;
-      below = true;
-    }
-    if (!below) break;
+    x = change(matrix, x, free);
+    const auto below = now + x < 0;
+    if (!below.any()) break;
+    free = below.select(0.0, free);
+    x = x.max(-now);
   }
-  const std::vector<double> ax = times(x, 0);
-  double gain = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) gain += x[i] * (2 * residual_[i] - ax[i]);
+  const double gain = (x * (2 * residual_ - times(matrix_, x))).sum();
   if (!(gain > 0)) return map;
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::max(x[i] + map[i], 0.0);
-  return x;
+  now = (now + x).max(0.0);
+  std::vector<double> result(map.size());
+  for (std::size_t t = 0; t < map.size(); ++t) result[t] = now[place(static_cast<Index>(t))];
+  return result;
 }
 
 }  // namespace weft::factor_maps

@@ -2,7 +2,7 @@
 // return.
 #pragma once
 
-#include <span>
+#include <Eigen/Core>
 #include <vector>
 
 #include "codecs/factor_maps/parabolic_map.h"
@@ -28,16 +28,24 @@ class MapEquations {
   std::vector<double> solved(const std::vector<double>& map) const;
 
  private:
-  std::vector<double> times(const std::vector<double>& x, double mu) const;
-  std::vector<double> change(const std::vector<double>& start, const std::vector<bool>& held,
-                             double mu) const;
-
-  int resolution_;
-  double smoothness_;
+  using Values = Eigen::ArrayXd;
   // The matrix's entries between a texel and itself, and the ones to the right, below left, below
-  // and below right of it; it is symmetric.
-  std::vector<double> own_, right_, below_left_, below_, below_right_;
-  std::vector<double> residual_;
+  // and below right of it; it is symmetric. Texels lie in a border of zeros, so that whole arrays
+  // are multiplied at once.
+  struct Matrix {
+    Values own, right, below_left, below, below_right;
+  };
+
+  Eigen::Index place(Eigen::Index texel) const;
+  Values times(const Matrix& matrix, const Values& x) const;
+  Matrix smoothed(double mu) const;
+  Values change(const Matrix& matrix, const Values& start, const Values& free) const;
+
+  Eigen::Index resolution_;
+  Eigen::Index stride_;
+  double smoothness_;
+  Matrix matrix_;
+  Values residual_;
 };
 
 }  // namespace weft::factor_maps

@@ -208,6 +208,11 @@ double found_lambda(const TexelSource& source, const Solver& solver, int resolut
       });
 }
 
+// Steep maps hardly overlap, and what their product is to be multiplied by leaves the floats. Where
+// the scale is not solved again it is held at 1e18, whose square is finite too: such a fit is
+// wrong, but can be saved, opened and judged.
+constexpr double largest_shift = 41.4;
+
 void store_block(Solver::Solution solution, const LaneVector& f,
                  std::span<const std::size_t> texels, FittedFactors& fitted) {
   const Lanes brightest = largest_of(f);
@@ -215,7 +220,8 @@ void store_block(Solver::Solution solution, const LaneVector& f,
     store(solution.maps[factor], texels, factor, fitted);
   for (int k = 0; k < 3 * static_cast<int>(texels.size()); ++k) {
     fitted.scale[3 * texels[k / 3] + k % 3] *=
-        brightest[k] > 0 ? static_cast<float>(std::exp(solution.shift[k])) : 0.0F;
+        brightest[k] > 0 ? static_cast<float>(std::exp(std::min(solution.shift[k], largest_shift)))
+                         : 0.0F;
   }
 }
 

@@ -9,11 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "btf/random.h"
 #include "codecs/hf/cross_validation.h"
 #include "codecs/hf/log_system.h"
 #include "codecs/representation.h"
 #include "codecs/sample_error.h"
 #include "tests/codecs/synthetic_btf.h"
+#include "tests/temporary_folder.h"
 
 using namespace weft;
 using namespace weft::hf;
@@ -206,6 +208,30 @@ TEST_CASE(
     INFO(bits << ": auto " << found << ", best " << best << ", worst " << worst);
     CHECK(found < 1.1 * best);
     CHECK(found < 0.9 * worst);
+  }
+}
+
+TEST_CASE("Maps too steep for their scale end in numbers that can be saved and judged") {
+  // Every pair another order of magnitude: the maps follow each, and their product means nothing.
+  const auto btf = synthetic_btf(
+      2, 2, "ubo81", "ubo81", [](int x, int y, const Direction& l, const Direction& v) {
+        const auto at = [](float d) { return static_cast<std::uint64_t>(1e4F * (d + 1)); };
+        const float power =
+            unit_float(hash_coordinates(x + 2 * y, at(l.x), at(l.y), at(v.x), at(v.y)));
+        return Rgb(1, 1, 1) * std::pow(1e-9F, power);
+      });
+  for (const std::string bits : {"float", "8"}) {
+    Progress progress;
+    const std::vector<std::string> steep{"refit_scale=false", "lambda=0.0001", "floor=1e-9",
+                                         "clustered=false", "bits=" + bits};
+    const auto fitted =
+        codec_named("hf").fit(btf, Settings::from_text("", "test", steep), progress);
+    CHECK(std::isfinite(sample_error(*btf, *fitted).relative_rmse));
+    const TemporaryFolder folder;
+    fitted->save(folder.path / "steep.hf");
+    const Direction up(0, 0, 1);
+    CHECK(open_representation(folder.path / "steep.hf")->evaluate({0.3F, 0.6F}, up, up, 0) ==
+          fitted->evaluate({0.3F, 0.6F}, up, up, 0));
   }
 }
 

@@ -39,7 +39,9 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const Codec& codec : codecs()) all.push_back({codec.name, {}});
   all.push_back({"cmf", {"bits=float"}});
+  all.push_back({"cmf", {"rotate=false"}});
   all.push_back({"cmf", {"clustered=false"}});
+  all.push_back({"cmf", {"clustered=false", "bits=float", "rotate=true"}});
   all.push_back({"cmf", {"clustered=false", "bits=float", "factors=light,view", "resolution=31"}});
   all.push_back({"pca", {"bits=8", "components=3"}});
   all.push_back({"pca-view", {"bits=float"}});
