@@ -50,27 +50,31 @@ inline Float4 four_at(const half* p) {
 #endif
 }
 
-// Where the last sample of all may be among them, nothing is read behind it.
+// Where the last sample of all may be among them, nothing is read behind it. Texels side by side: a
+// sample's place and weight are loaded once for the four.
 template <bool at_end, typename Value>
 inline Rgb blended(const Value* values, std::size_t stride, const TexelStencil& texels,
                    const SampleStencil& samples) {
-  Float4 sum{};
-  for (std::size_t t = 0; t < 4; ++t) {
-    const Value* texel = values + texels.index[t] * stride;
-    Float4 of_texel{};
-    for (std::size_t k = 0; k < 9; ++k) {
-      const Value* p = texel + samples.first[k];
-      of_texel += (at_end ? Float4{p[0], p[1], p[2], 0} : four_at(p)) * samples.weight[k];
+  std::array<const Value*, 4> texel;
+  for (std::size_t t = 0; t < 4; ++t) texel[t] = values + texels.index[t] * stride;
+  std::array<Float4, 4> sums{};
+  for (std::size_t v = 0; v < 3; ++v) {
+    for (std::size_t k = 4 * v; k < 4 * v + 3; ++k) {
+      for (std::size_t t = 0; t < 4; ++t) {
+        const Value* p = texel[t] + 3 * static_cast<std::ptrdiff_t>(samples.index[k]);
+        sums[t] += (at_end ? Float4{p[0], p[1], p[2], 0} : four_at(p)) * samples.weight[k];
+      }
     }
-    sum += of_texel * texels.weight[t];
   }
+  Float4 sum{};
+  for (std::size_t t = 0; t < 4; ++t) sum += sums[t] * texels.weight[t];
   return {sum[0], sum[1], sum[2]};
 }
 
 template <typename Value>
-inline Rgb blended(std::span<const Value> values, std::size_t stride, const TexelStencil& texels,
-                   const SampleStencil& samples) {
-  return std::ranges::max(texels.index) + 1 == values.size() / stride
+inline Rgb blended(std::span<const Value> values, std::size_t n_texels, std::size_t stride,
+                   const TexelStencil& texels, const SampleStencil& samples) {
+  return std::ranges::max(texels.index) + 1 == n_texels
              ? blended<true>(values.data(), stride, texels, samples)
              : blended<false>(values.data(), stride, texels, samples);
 }
@@ -93,9 +97,9 @@ SampleStencil sample_stencil(const Stencil& views, const Stencil& lights,
   for (std::size_t v = 0; v < 3; ++v) {
     for (std::size_t l = 0; l < 3; ++l) {
       const std::size_t light = lights.index[l];
-      samples.first[3 * v + l] =
-          static_cast<std::uint32_t>(3 * (views.index[v] * of_light.size() + light));
-      samples.weight[3 * v + l] = views.weight[v] * (lights.weight[l] * of_light[light] * factor);
+      samples.index[4 * v + l] =
+          static_cast<std::int32_t>(views.index[v] * of_light.size() + light);
+      samples.weight[4 * v + l] = views.weight[v] * (lights.weight[l] * of_light[light] * factor);
     }
   }
   return samples;
@@ -103,8 +107,10 @@ SampleStencil sample_stencil(const Stencil& views, const Stencil& lights,
 
 Rgb blended(const Btf& level, const TexelStencil& texels, const SampleStencil& samples) {
   const std::size_t stride = 3 * level.views().size() * level.lights().size();
-  return level.pixel_type() == PixelType::half ? blended(level.halfs(), stride, texels, samples)
-                                               : blended(level.floats(), stride, texels, samples);
+  const std::size_t n_texels = static_cast<std::size_t>(level.width()) * level.height();
+  return level.pixel_type() == PixelType::half
+             ? blended(level.halfs(), n_texels, stride, texels, samples)
+             : blended(level.floats(), n_texels, stride, texels, samples);
 }
 
 Btf next_mip_level(const Btf& finer) {

@@ -66,11 +66,11 @@ struct TexelStencil {
 };
 TexelStencil bilinear_texels(Texcoord uv, int width, int height);
 
-/// Which samples of a texel's ABRDF a query blends: the place of each one's red among the texel's
-/// values, and its weight.
+/// Which samples of a texel's ABRDF a query blends: index = view n_lights + light, and its weight.
+/// View v and light l of three each are at 4 v + l; places 4 v + 3 are not used, or weigh nothing.
 struct SampleStencil {
-  std::array<std::uint32_t, 9> first;
-  std::array<float, 9> weight;
+  std::array<std::int32_t, 12> index;
+  std::array<float, 12> weight;
 };
 /// @param of_light  what the weights of each light are multiplied by.
 /// @param factor    what all of them are multiplied by.

@@ -100,23 +100,23 @@ StencilLane lane_of(const Stencil& stencil) {
   return lane;
 }
 
-inline PairLane pair_lane(const StencilLane& views, const StencilLane& lights,
-                          std::span<const float> of_light, float factor) {
+// Straight into its place: what is returned is copied, and waits for its own writing.
+inline void set_pairs(const StencilLane& views, const StencilLane& lights,
+                      std::span<const float> of_light, float factor, PairLane& pairs) {
   Float4 light = load4(lights.weight.data());
   light *=
       Float4{of_light[lights.index[0]], of_light[lights.index[1]], of_light[lights.index[2]], 0};
   Int4 index;
   std::memcpy(&index, lights.index.data(), sizeof index);
   const auto n_lights = static_cast<std::int32_t>(of_light.size());
-  PairLane pairs;
   for (std::size_t v = 0; v < 3; ++v) {
     const Float4 w = light * (views.weight[v] * factor);
     const Int4 k = index + views.index[v] * n_lights;
     std::memcpy(&pairs.weight[4 * v], &w, sizeof w);
     std::memcpy(&pairs.index[4 * v], &k, sizeof k);
   }
-  pairs.view = views.index;
-  return pairs;
+  std::memcpy(&index, views.index.data(), sizeof index);
+  std::memcpy(pairs.view.data(), &index, sizeof index);
 }
 
 // `place` counts texels from the first one's centre, and is in [-0.5, size - 0.5] or a NaN.
@@ -411,13 +411,15 @@ Batch<PairLane> pair_batch(const StencilBatch& views, const StencilBatch& lights
                            std::span<const float> of_light, const Batch<float>& factor) {
   Batch<PairLane> pairs;
   for (std::size_t i = 0; i < batch_lanes; ++i)
-    pairs[i] = pair_lane(views[i], lights[i], of_light, factor[i]);
+    set_pairs(views[i], lights[i], of_light, factor[i], pairs[i]);
   return pairs;
 }
 
 PairLane pair_lane(const Stencil& views, const Stencil& lights, std::span<const float> of_light,
                    float factor) {
-  return pair_lane(lane_of(views), lane_of(lights), of_light, factor);
+  PairLane pairs;
+  set_pairs(lane_of(views), lane_of(lights), of_light, factor, pairs);
+  return pairs;
 }
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "btf/appearance.h"
@@ -79,6 +80,22 @@ TexelBatch texel_batch(const AxisBatch& columns, const AxisBatch& rows,
                        const Batch<std::int32_t>& width);
 TexelBatch texel_batch(const QueryBatch& queries, int width, int height);
 
+/// Texels of each lane's level, of which most batches have one.
+/// @param size_of  (level) to its width and height.
+template <typename SizeOf>
+TexelBatch level_texel_batch(const QueryBatch& queries, const Batch<std::int32_t>& levels,
+                             const SizeOf& size_of) {
+  if (std::ranges::all_of(levels, [&](std::int32_t l) { return l == levels[0]; })) {
+    const auto [width, height] = size_of(levels[0]);
+    return texel_batch(queries, width, height);
+  }
+  Batch<std::int32_t> widths;
+  Batch<std::int32_t> heights;
+  for (std::size_t i = 0; i < batch_lanes; ++i)
+    std::tie(widths[i], heights[i]) = size_of(levels[i]);
+  return texel_batch(column_batch(queries.u, widths), row_batch(queries.v, heights), widths);
+}
+
 /// Three neighbours of each direction and their weights; the fourth place holds index and weight 0.
 struct alignas(16) StencilLane {
   std::array<std::int32_t, 4> index;
@@ -114,11 +131,8 @@ class BatchLocator {
   std::vector<std::uint16_t> grid_;
 };
 
-/// Views times lights: index = view n_lights + light, and the product of their weights, at
-/// 4 v + l; places 4 v + 3 have weight 0.
-struct alignas(64) PairLane {
-  std::array<std::int32_t, 12> index;
-  std::array<float, 12> weight;
+/// Views times lights; places 4 v + 3 weigh nothing, and the last of the views is none.
+struct alignas(64) PairLane : SampleStencil {
   std::array<std::int32_t, 4> view;
 };
 /// @param of_light  what the weights of each light are multiplied by.

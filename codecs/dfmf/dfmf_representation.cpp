@@ -81,6 +81,20 @@ Rgb DfmfRepresentation::decode(const TexelStencil& texels, const PairLane& neigh
   return {blended(red, texels.weight), blended(green, texels.weight), blended(blue, texels.weight)};
 }
 
+// Rows lie wherever they do; those of the next query are asked for while this one is decoded.
+void DfmfRepresentation::fetch(const TexelStencil& texels, const PairLane& neighbours) const {
+  constexpr std::size_t floats_a_line = 16;
+  const std::size_t slots = model_.slots();
+  for (std::size_t s = 0; s < slots; s += floats_a_line) {
+    for (const std::uint32_t texel : texels.index)
+      __builtin_prefetch(&model_.weights[texel * slots + s]);
+    for (std::size_t v = 0; v < 3; ++v) {
+      for (std::size_t l = 0; l < 3; ++l)
+        __builtin_prefetch(&basis_[neighbours.index[4 * v + l] * slots + s]);
+    }
+  }
+}
+
 Rgb DfmfRepresentation::evaluate(Texcoord uv, Direction light, Direction view,
                                  float /*lod*/) const {
   if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
@@ -97,7 +111,10 @@ void DfmfRepresentation::evaluate(std::span<const AppearanceQuery> queries,
         pair_batch(view_locator_.locate(model_.head.views, batch.view),
                    light_locator_.locate(model_.head.lights, batch.light), ones_, batch.light.z);
     Batch<Rgb> values;
-    for (std::size_t i = 0; i < batch_lanes; ++i) values[i] = decode(texels.lane(i), pairs[i]);
+    for (std::size_t i = 0; i < batch_lanes; ++i) {
+      if (i + 1 < batch_lanes) fetch(texels.lane(i + 1), pairs[i + 1]);
+      values[i] = decode(texels.lane(i), pairs[i]);
+    }
     return values;
   });
 }

@@ -30,6 +30,7 @@ class DfmfRepresentation : public Representation {
 
  private:
   Rgb decode(const TexelStencil& texels, const PairLane& neighbours) const;
+  void fetch(const TexelStencil& texels, const PairLane& neighbours) const;
 
   Model model_;
   BatchLocator view_locator_;

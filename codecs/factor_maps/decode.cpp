@@ -27,8 +27,8 @@ std::size_t image_of(Projection projection) {
   }
 }
 
-Direction turned(const Direction& d, float cosine, float sine) {
-  return {cosine * d.x - sine * d.y, sine * d.x + cosine * d.y, d.z};
+Direction turned(const Direction& d, const Turn& turn) {
+  return {turn.cosine * d.x - turn.sine * d.y, turn.sine * d.x + turn.cosine * d.y, d.z};
 }
 
 PlaneLanes direction_images(const DirectionLanes& d) {
@@ -86,14 +86,12 @@ Decoder::Decoder(const Model& model)
       single_terms_ && model.factors.size() == 3 && model.factors[1].projection == Projection::half;
   for (int step = 0; step < rotation_steps; ++step) {
     const double angle = -2 * std::numbers::pi * step / rotation_steps;
-    cosine_[step] = static_cast<float>(std::cos(angle));
-    sine_[step] = static_cast<float>(std::sin(angle));
+    turn_back_[step] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
   }
+  for (const std::uint8_t steps : model.rotation) turns_.push_back(turn_back_[steps]);
   for (std::size_t t = 0; t < texels_.size(); ++t) {
     const Rgb scale = (model.scale.size() > 0 ? model.scale_of(t) : Rgb(1, 1, 1)) * unit;
     texels_[t].scale = Vec4{scale.x, scale.y, scale.z, 0};
-    texels_[t].cosine = model.rotation.empty() ? 1 : cosine_[model.rotation[t]];
-    texels_[t].sine = model.rotation.empty() ? 0 : sine_[model.rotation[t]];
     for (std::size_t f = 0; f < model.factors.size(); ++f)
       texels_[t].map[f] = model.map_of(f, t) * model.factors[f].terms * map_values_;
   }
@@ -164,8 +162,8 @@ template <typename Texels, typename LookUp>
 
 MapPlaces Decoder::places(const Direction& light_asked, const Direction& view_asked,
                           int rotation) const {
-  const Direction light = turned(light_asked, cosine_[rotation], sine_[rotation]);
-  const Direction view = turned(view_asked, cosine_[rotation], sine_[rotation]);
+  const Direction light = turned(light_asked, turn_back_[rotation]);
+  const Direction view = turned(view_asked, turn_back_[rotation]);
   const PlaneQuad images = has_difference_
                                ? plane_images(light, view, difference_vector(light, view))
                                : plane_images(light, view);
@@ -206,9 +204,9 @@ Vec4 Decoder::turned_level_value(const Level& level, const Texcoord& uv, const D
   Vec4 cosine;
   Vec4 sine;
   for (std::size_t t = 0; t < 4; ++t) {
-    const std::uint8_t rotation = model_.rotation[level.first + stencil.index[t]];
-    cosine[t] = cosine_[rotation];
-    sine[t] = sine_[rotation];
+    const Turn& turn = turns_[level.first + stencil.index[t]];
+    cosine[t] = turn.cosine;
+    sine[t] = turn.sine;
   }
   const PlaneQuad images = plane_images(light, view);
   std::array<std::array<MapPlace, 4>, 3> places;
@@ -281,24 +279,12 @@ std::array<PlaneLanes, max_factors> Decoder::images(const QueryBatch& batch) con
 // The four texels around uv at each lane's level, weights times `share`.
 TexelBatch Decoder::level_texels(const QueryBatch& batch, const Batch<std::int32_t>& levels,
                                  const Batch<float>& share) const {
-  alignas(64) Batch<std::int32_t> width;
-  alignas(64) Batch<std::int32_t> height;
+  TexelBatch texels = level_texel_batch(batch, levels, [&](std::int32_t l) {
+    return std::pair(model_.levels[l].width, model_.levels[l].height);
+  });
   alignas(64) Batch<std::int32_t> first;
-  const bool is_one_level = std::ranges::all_of(levels, [&](int l) { return l == levels[0]; });
-  if (is_one_level) {
-    const Level& level = model_.levels[levels[0]];
-    width.fill(level.width);
-    height.fill(level.height);
-    first.fill(static_cast<std::int32_t>(level.first));
-  } else {
-    for (std::size_t i = 0; i < batch_lanes; ++i) {
-      const Level& level = model_.levels[levels[i]];
-      width[i] = level.width;
-      height[i] = level.height;
-      first[i] = static_cast<std::int32_t>(level.first);
-    }
-  }
-  TexelBatch texels = texel_batch(column_batch(batch.u, width), row_batch(batch.v, height), width);
+  for (std::size_t i = 0; i < batch_lanes; ++i)
+    first[i] = static_cast<std::int32_t>(model_.levels[levels[i]].first);
   for (std::size_t t = 0; t < 4; ++t) {
     for (std::size_t i = 0; i < batch_lanes; ++i) {
       texels.index[t][i] += first[i];
@@ -361,9 +347,9 @@ void Decoder::add_turned_level(const TexelBatch& texels,
     alignas(64) Batch<float> cosine;
     alignas(64) Batch<float> sine;
     for (std::size_t i = 0; i < batch_lanes; ++i) {
-      const Texel& texel = texels_[texels.index[t][i]];
-      cosine[i] = texel.cosine;
-      sine[i] = texel.sine;
+      const Turn& turn = turns_[texels.index[t][i]];
+      cosine[i] = turn.cosine;
+      sine[i] = turn.sine;
     }
     for (std::size_t f = 0; f < 3; ++f) {
       PlaneLanes turned;

@@ -21,6 +21,12 @@ namespace weft::factor_maps {
 /// By factor; only those of the model's are set.
 using MapPlaces = std::array<MapPlace, max_factors>;
 
+/// A rotation about the normal.
+struct Turn {
+  float cosine;
+  float sine;
+};
+
 /// Decodes one model, which must outlive it and keep its arrays where they are.
 class Decoder {
  public:
@@ -39,8 +45,6 @@ class Decoder {
   struct Texel {
     Vec4 scale;
     std::array<std::size_t, max_factors> map;
-    float cosine;
-    float sine;
   };
   template <typename Value>
   Vec4 product(const Value* const* maps, const Texel& texel, const MapPlaces& places) const;
@@ -69,8 +73,8 @@ class Decoder {
   std::array<const std::uint8_t*, max_factors> bytes_{};
   std::array<const float*, max_factors> floats_{};
   std::vector<Texel> texels_;
-  std::array<float, rotation_steps> cosine_{};  // of turning back
-  std::array<float, rotation_steps> sine_{};
+  std::vector<Turn> turns_;  // of each texel; none where none is turned
+  std::array<Turn, rotation_steps> turn_back_;
 };
 
 }  // namespace weft::factor_maps

@@ -139,33 +139,17 @@ vec3 btf_evaluate(vec2 uv, vec3 light, vec3 view, float lod) {
 }
 )";
 
-SampleStencil samples_of(const PairLane& pairs) {
-  SampleStencil samples;
-  for (std::size_t v = 0; v < 3; ++v) {
-    for (std::size_t l = 0; l < 3; ++l) {
-      samples.first[3 * v + l] = static_cast<std::uint32_t>(3 * pairs.index[4 * v + l]);
-      samples.weight[3 * v + l] = pairs.weight[4 * v + l];
-    }
-  }
-  return samples;
-}
-
 // At each lane's level. Nothing is gained by asking for samples ahead: the CPU finds the next
 // lanes' by itself (measured).
 Batch<Rgb> blended_in_batch(const std::vector<std::shared_ptr<const Btf>>& levels,
                             const Batch<std::int32_t>& level, const QueryBatch& batch,
-                            const Batch<SampleStencil>& samples) {
-  Batch<std::int32_t> width;
-  Batch<std::int32_t> height;
-  for (std::size_t i = 0; i < batch_lanes; ++i) {
-    width[i] = levels[level[i]]->width();
-    height[i] = levels[level[i]]->height();
-  }
-  const TexelBatch texels =
-      texel_batch(column_batch(batch.u, width), row_batch(batch.v, height), width);
+                            const Batch<PairLane>& pairs) {
+  const TexelBatch texels = level_texel_batch(batch, level, [&](std::int32_t l) {
+    return std::pair(levels[l]->width(), levels[l]->height());
+  });
   Batch<Rgb> values;
   for (std::size_t i = 0; i < batch_lanes; ++i)
-    values[i] = blended(*levels[level[i]], texels.lane(i), samples[i]);
+    values[i] = blended(*levels[level[i]], texels.lane(i), pairs[i]);
   return values;
 }
 
@@ -186,13 +170,11 @@ Batch<Rgb> RawRepresentation::decode(const QueryBatch& batch) const {
   const Batch<PairLane> pairs =
       pair_batch(view_locator_.locate(views(), batch.view),
                  light_locator_.locate(lights(), batch.light), inverse_cosines_, batch.light.z);
-  Batch<SampleStencil> samples;
-  for (std::size_t i = 0; i < batch_lanes; ++i) samples[i] = samples_of(pairs[i]);
   const auto& levels = appearance_.levels();
   const LevelBatch level = level_batch(batch.lod, levels.size());
-  const Batch<Rgb> fine = blended_in_batch(levels, level.fine, batch, samples);
+  const Batch<Rgb> fine = blended_in_batch(levels, level.fine, batch, pairs);
   if (std::ranges::max(level.blend) == 0) return fine;
-  const Batch<Rgb> coarse = blended_in_batch(levels, level.coarse, batch, samples);
+  const Batch<Rgb> coarse = blended_in_batch(levels, level.coarse, batch, pairs);
   Batch<Rgb> values;
   for (std::size_t i = 0; i < batch_lanes; ++i)
     values[i] = fine[i] * (1 - level.blend[i]) + coarse[i] * level.blend[i];
