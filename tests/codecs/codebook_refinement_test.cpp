@@ -113,7 +113,8 @@ TEST_CASE("A site that hardly weighs does not move a smooth map far") {
   CHECK(moved(1) < 5);
 }
 
-TEST_CASE("Refined codebooks lose less, for every set of factors, with mip levels and turned") {
+TEST_CASE("Refined codebooks lose less, for every set of factors, with mip levels and turned",
+          "[heavy]") {
   const auto btf = realistic_btf(16, "regular:4x8");
   for (const std::string factors :
        {"light,view", "light,half,view", "light,half,difference,view"}) {
