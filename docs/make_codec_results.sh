@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures what the codecs cost and lose, and remakes tables and figures of the papers that they come from: writes
-# docs/results/codecs.md, docs/results/papers.md and the pictures in docs/images/papers/.
+# docs/results/codecs.md, docs/results/factor_maps.md, docs/results/papers.md and the pictures in docs/images/papers/.
 # Usage: docs/make_codec_results.sh [FOLDER]           measures all. Datasets and numbers go to FOLDER (default: codec_results);
 #                                                      datasets that are there are kept, numbers are measured again
 #        docs/make_codec_results.sh --continue [FOLDER]   the same, after an interruption: numbers that are there are kept
@@ -22,6 +22,16 @@ lights=(0,0 30,0 60,0)
 # The codecs' own ways, where they depart from the papers.
 lod_paper=(top=mean prediction=open)
 cmf_paper=(rank_one=plain refine=0 refit_scale=false levels=false rotate=false weighted=false)
+
+# Parameters of the factor maps that docs/results/factor_maps.md tells side by side.
+cmf_variants=(
+  "" "rotate=false" "refine_codebooks=0" "rotate=false refine_codebooks=0" "refine_codebooks=8" "clustering=tree"
+  "metric=cosine" "clustered=false" "clustered=false rotate=true" "clustered=false bits=float" "clustered=false refine=0"
+  "clustered=false refine=0 rank_one=plain" "clustered=false terms=2" "clustered=false factors=light,half,difference,view")
+hf_variants=(
+  "" "clustered=false" "clustered=false bits=float" "clustered=false lambda=auto" "clustered=false bits=float lambda=auto"
+  "clustered=false floor=0.01")
+declare -A scenes=([checker]=cube_checker [rings]=seashell_rings [tissue]=torus_tissue)
 
 say() { echo "$*" >&2; }
 
@@ -124,6 +134,32 @@ measure_sizes() {
   done
 }
 
+# picture KEY NAME: what a picture of the structure's scene with fits/KEY differs from the raw one by, into json/KEY.json.
+picture() {
+  local key=$1 scene=$docs/../scenes/${scenes[$2]}.toml json=$work/json/$1.json
+  jq -e 'has("picture")' "$json" >/dev/null && return
+  local draw=("$weft" render "$scene" --spp 16 --quiet)
+  [[ -f $work/picture_$2.exr ]] || "${draw[@]}" --btf "$work/data/$2.btf" -o "$work/picture_$2.exr"
+  "${draw[@]}" --btf "$work/fits/$key" -o "$work/picture.exr"
+  "$weft" compare "$work/picture_$2.exr" "$work/picture.exr" --json >"$work/compared.json"
+  jq --slurpfile picture "$work/compared.json" '. + {picture: $picture[0].relative_rmse}' "$json" >"$work/measured.json"
+  mv "$work/measured.json" "$json"
+}
+
+# variants CODEC PARAMETERS...: each on every structure.
+variants() {
+  local codec=$1 name i
+  local -a all=("${@:2}") set
+  for name in "${structures[@]}"; do
+    for i in "${!all[@]}"; do
+      read -ra set <<<"${all[i]}"
+      fit "variant_${codec}_${i}_$name" "$name" "$codec" "${set[@]}"
+      picture "variant_${codec}_${i}_$name" "$name"
+      rm -rf "$work/fits/variant_${codec}_${i}_$name"
+    done
+  done
+}
+
 measure_bench() {
   [[ ! -f $work/bench.json ]] || return 0
   say "bench codecs"
@@ -141,6 +177,9 @@ if [[ $mode != write ]]; then
   measure_factorisations
   draw_factorisations
   measure_sizes
+  rm -f "$work"/picture_*.exr
+  variants cmf "${cmf_variants[@]}"
+  variants hf "${hf_variants[@]}"
   jq -n '[inputs | {(input_filename | sub(".*/"; "") | sub(".json$"; "")): .}] | add' "$work"/json/*.json \
     >"$work/papers.json"
 fi
@@ -153,6 +192,9 @@ jq -r --arg machine "$machine" --arg spp "$spp" --argjson components "$(jq -cn '
   --argjson lambdas "$(jq -cn '$ARGS.positional' --args "${lambdas[@]}")" \
   --argjson paper_lambdas "$(jq -cn '$ARGS.positional' --args "${paper_lambdas[@]}")" \
   -f "$docs/paper_results.jq" "$work/papers.json" >"$docs/results/papers.md"
+jq -r --arg machine "$machine" --arg spp "$spp" --argjson cmf "$(jq -cn '$ARGS.positional' --args "${cmf_variants[@]}")" \
+  --argjson hf "$(jq -cn '$ARGS.positional' --args "${hf_variants[@]}")" \
+  -f "$docs/factor_map_results.jq" "$work/papers.json" >"$docs/results/factor_maps.md"
 for name in "${structures[@]}"; do
   for count in "${components[@]}"; do
     jq -r --arg name "$name" --arg count "$count" '.["figure6_\($name)_\($count)"].y
