@@ -136,6 +136,7 @@ void compress(const Options& options, Session& session, bool seed_given) {
   session.measured["fit_seconds"] = fit_time.count();
   session.measured["rmse"] = error.rmse;
   session.measured["relative_rmse"] = error.relative_rmse;
+  session.measured["luminance_difference"] = error.luminance_difference;
   session.say(fmt::format("{}  {}", options.output, codec.summary));
   session.say(fmt::format("textures    {} bytes, {:.1f} times below 24-bit input", fitted->bytes(),
                           compression_ratio(*fitted)));

@@ -12,9 +12,12 @@
 #include "codecs/cmf/cmf.h"
 #include "codecs/dfmf/dfmf.h"
 #include "codecs/hf/hf.h"
+#include "codecs/lafortune/lafortune.h"
 #include "codecs/laplacian/laplacian.h"
+#include "codecs/lobes/lobes.h"
 #include "codecs/pca/pca.h"
 #include "codecs/pca_view/pca_view.h"
+#include "codecs/ptm/ptm.h"
 #include "codecs/raw/raw.h"
 #include "codecs/representation.h"
 #include "settings/nearest_name.h"
@@ -32,8 +35,9 @@ std::string hint_for(const std::string& name) {
 }  // namespace
 
 std::span<const Codec> codecs() {
-  static const std::array table{raw_codec(),      cmf_codec(),       hf_codec(),  pca_codec(),
-                                pca_view_codec(), laplacian_codec(), dfmf_codec()};
+  static const std::array table{raw_codec(),      cmf_codec(),       hf_codec(),   pca_codec(),
+                                pca_view_codec(), laplacian_codec(), dfmf_codec(), lobes_codec(),
+                                ptm_codec(),      lafortune_codec()};
   return table;
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "codecs/luminance.h"
+
 namespace weft {
 
 namespace {
@@ -14,6 +16,8 @@ struct Sums {
   double error = 0;
   double data = 0;
   double count = 0;
+  double luminance_error = 0;
+  double luminance = 0;
 };
 
 std::vector<AppearanceQuery> texel_queries(const Btf& btf, int x, int y) {
@@ -37,13 +41,17 @@ Sums texel_sums(const Btf& btf, const Representation& representation, int x, int
   Sums sums;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     if (!(queries[i].light.z > 0) || !(queries[i].view.z > 0)) continue;
+    double luminance_error = 0;
     for (int c = 0; c < 3; ++c) {
       const double wanted = values[3 * i + c];
       const double difference = answers[i][c] - wanted;
       sums.error += difference * difference;
       sums.data += wanted * wanted;
       ++sums.count;
+      luminance_error += luminance_of_rgb[c] * difference;
+      sums.luminance += luminance_of_rgb[c] * wanted;
     }
+    sums.luminance_error += std::abs(luminance_error);
   }
   return sums;
 }
@@ -60,14 +68,17 @@ SampleError sample_error(const Btf& btf, const Representation& representation) {
     all.error += texel.error;
     all.data += texel.data;
     all.count += texel.count;
+    all.luminance_error += texel.luminance_error;
+    all.luminance += texel.luminance;
   }
+  const auto relative = [](double error, double data) {
+    if (data > 0) return error / data;
+    return error > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+  };
   SampleError result;
   if (all.count > 0) result.rmse = std::sqrt(all.error / all.count);
-  if (all.data > 0) {
-    result.relative_rmse = std::sqrt(all.error / all.data);
-  } else if (all.error > 0) {
-    result.relative_rmse = std::numeric_limits<double>::infinity();
-  }
+  result.relative_rmse = std::sqrt(relative(all.error, all.data));
+  result.luminance_difference = relative(all.luminance_error, all.luminance);
   return result;
 }
 

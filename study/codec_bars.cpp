@@ -50,11 +50,13 @@ double decode_ns(const CodecBench& bench) {
   return bench.decode.single;
 }
 
-constexpr std::array<Limit, 4> codec_limits{{
+constexpr std::array<Limit, 6> codec_limits{{
     {"laplacian", "laplacian: fit", "s", fit_seconds, 30},
     {"raw", "raw: decode", "ns", decode_ns, 150},
     {"cmf", "cmf: decode", "ns", decode_ns, 60},
     {"laplacian", "laplacian: decode", "ns", decode_ns, 150},
+    {"lobes", "lobes: fit", "s", fit_seconds, 180},
+    {"lobes", "lobes: decode", "ns", decode_ns, 80},
 }};
 constexpr std::array<Limit, 2> variant_limits{{
     {"cmf", "cmf: fit with clustering, dense directions", "s", fit_seconds, 20},

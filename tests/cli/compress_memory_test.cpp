@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> codec_names = {"raw",      "cmf",       "hf",  "pca",
-                                              "pca-view", "laplacian", "dfmf"};
+const std::vector<std::string> codec_names = {"raw",       "cmf",  "hf",    "pca", "pca-view",
+                                              "laplacian", "dfmf", "lobes", "ptm", "lafortune"};
 
 /// A folder with a traced checker, `in.btf`.
 struct Place {

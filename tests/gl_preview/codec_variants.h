@@ -11,8 +11,14 @@ struct FittedVariant {
   std::unique_ptr<weft::Representation> representation;
 };
 
-/// For each codec, each combination of those of the parameters below that it has; a new codec is
-/// fitted with its defaults.
+/// By its help of `bits`.
+inline bool takes_8_bits(const weft::Codec& codec) {
+  const std::string line = codec.parameters.substr(codec.parameters.find("bits "));
+  return line.substr(0, line.find('\n')).find('8') != std::string::npos;
+}
+
+/// For each codec, each combination of those of the parameters below that it has (halfs where there
+/// are no 8 bits); a new codec is fitted with its defaults.
 inline std::vector<FittedVariant> fitted_variants(const std::shared_ptr<const weft::Btf>& btf) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> offered = {
       {"bits", {"bits=8", "bits=float"}}, {"clustered", {"clustered=true", "clustered=false"}}};
@@ -25,7 +31,8 @@ inline std::vector<FittedVariant> fitted_variants(const std::shared_ptr<const we
       for (const auto& combination : combinations) {
         for (const std::string& choice : choices) {
           longer.push_back(combination);
-          longer.back().push_back(choice);
+          longer.back().push_back(choice == "bits=8" && !takes_8_bits(codec) ? "bits=half"
+                                                                             : choice);
         }
       }
       combinations = longer;
@@ -42,6 +49,10 @@ inline std::vector<FittedVariant> fitted_variants(const std::shared_ptr<const we
       combinations.push_back({"filters=linear", "levels=1", "components_cb=3", "top=mean"});
     }
     if (codec.name.starts_with("pca")) combinations.push_back({"bits=half", "components=5"});
+    if (codec.name == "lobes") combinations.push_back({"lobes=1"});
+    if (codec.name == "lafortune") combinations.push_back({"lobes=3"});
+    if (codec.name == "ptm")
+      combinations.insert(combinations.end(), {{"cosine=inside"}, {"colour=channels"}});
     for (const auto& overrides : combinations) {
       std::string name = codec.name;
       for (const std::string& choice : overrides) name += " " + choice;

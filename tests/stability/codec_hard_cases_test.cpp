@@ -73,13 +73,30 @@ void check_answers(const Representation& representation, float bound) {
   }
 }
 
-void check(const Formula& f, double tolerance, float largest, int width = 4, int height = 2,
-           const std::string& lights = "regular:3x6", const std::string& views = "regular:3x6") {
+// Relative RMSE. `smooth` is of codecs that hold no more of a light field than a smooth function:
+// the nearest biquadratic (six numbers) of one bright light among 81 errs sqrt(1 - 6 / 81) = 96 %,
+// and a Lafortune lobe is as bright for all pairs of the same lx vx, ly vy, lz vz. There they may
+// be as far off as black is.
+struct Tolerance {
+  Tolerance(double of_all) : all(of_all), smooth(of_all) {}
+  Tolerance(double of_others, double of_smooth) : all(of_others), smooth(of_smooth) {}
+  double all;
+  double smooth;
+
+  double of(const Codec& codec) const {
+    return codec.name == "ptm" || codec.name == "lafortune" ? smooth : all;
+  }
+};
+const Tolerance lone_light(0.1, 1);
+
+void check(const Formula& f, const Tolerance& tolerance, float largest, int width = 4,
+           int height = 2, const std::string& lights = "regular:3x6",
+           const std::string& views = "regular:3x6") {
   const Btf btf = btf_of(width, height, named_directions(lights), named_directions(views), f);
   for (const Codec& codec : codecs()) {
     INFO(codec.name);
     const auto representation = fitted(codec, btf);
-    CHECK(sample_error(btf, *representation).relative_rmse <= tolerance);
+    CHECK(sample_error(btf, *representation).relative_rmse <= tolerance.of(codec));
     check_answers(*representation, 4 * largest);
   }
 }
@@ -124,16 +141,16 @@ TEST_CASE("Every codec bears a single bright direction") {
   const Direction bright = named_directions("ubo81")[40];
   check(
       [&](int, const Direction& l, const Direction&) { return Rgb(near(l, bright) ? 10.F : 0.F); },
-      0.1, 10, 2, 2, "ubo81", "regular:3x6");
+      lone_light, 10, 2, 2, "ubo81", "regular:3x6");
   check(
       [&](int, const Direction& l, const Direction&) { return Rgb(near(l, bright) ? 10.F : 1.F); },
-      0.1, 10, 2, 2, "ubo81", "regular:3x6");
+      lone_light, 10, 2, 2, "ubo81", "regular:3x6");
 }
 
 TEST_CASE("Every codec bears a range of 1e8") {
   const Direction bright = named_directions("ubo81")[40];
   check([&](int, const Direction& l, const Direction&) { return Rgb(near(l, bright) ? 1e8F : 1); },
-        0.1, 1e8F, 2, 2, "ubo81", "regular:3x6");
+        lone_light, 1e8F, 2, 2, "ubo81", "regular:3x6");
   check([](int x, const Direction&, const Direction&) { return Rgb(x == 1 ? 1e8F : 1.F); }, 0.004,
         1e8F);
   check([](int, const Direction&, const Direction&) { return Rgb(1e-8F); }, 0.004, 1e-8F);

@@ -1,0 +1,314 @@
+#include "codecs/reflectance_fields/representation.h"
+
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "btf/raw_appearance.h"
+#include "codecs/branchless_exp.h"
+#include "codecs/wide_vector.h"
+
+namespace weft::reflectance_fields {
+
+namespace {
+
+// Fields side by side, of four texels and as many views as the CPU takes: a row is one texel, its
+// quads are those views'.
+#ifdef __AVX512F__
+using Wide = Vec16;
+#else
+using Wide = Vec8;
+#endif
+constexpr std::size_t wide = sizeof(Wide) / sizeof(float);
+constexpr std::size_t views_at_once = wide / 4;
+using Rows = std::array<Wide, 4>;
+
+inline Wide power_of(Wide x, const Wide& n) {
+  for (std::size_t i = 0; i < wide; ++i) x[i] = branchless_power(x[i], n[i]);
+  return x;
+}
+
+inline Wide at_least_zero(Wide x) {
+  return x < 0.0F ? Wide{} : x;  // a NaN stays one
+}
+
+// A quad of each of the views' fields. In registers: written one by one to memory, they could not
+// be read as one before all are there.
+inline Wide row_of(const std::array<const float*, views_at_once>& quads) {
+#ifdef __AVX512F__
+  return joined(joined(load<Vec4>(quads[0]), load<Vec4>(quads[1])),
+                joined(load<Vec4>(quads[2]), load<Vec4>(quads[3])));
+#else
+  return joined(load<Vec4>(quads[0]), load<Vec4>(quads[1]));
+#endif
+}
+
+inline Wide row_of(const std::array<const half*, views_at_once>& quads) {
+#ifdef __F16C__
+  std::array<long long, views_at_once> q;
+  for (std::size_t i = 0; i < views_at_once; ++i) std::memcpy(&q[i], quads[i], sizeof q[i]);
+#ifdef __AVX512F__
+  // Unmasked, GCC 12 takes its own header for uninitialised (its bug 105593).
+  return (Wide)_mm512_maskz_cvtph_ps(0xFFFF, _mm256_set_epi64x(q[3], q[2], q[1], q[0]));
+#else
+  return (Wide)_mm256_cvtph_ps(_mm_set_epi64x(q[1], q[0]));
+#endif
+#else
+  Wide row;
+  for (std::size_t i = 0; i < wide; ++i) row[i] = quads[i / 4][i % 4];
+  return row;
+#endif
+}
+
+// a0 b0 a1 b1 of each four.
+inline Wide low_pairs(Wide a, Wide b) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+#else
+  return __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+#endif
+}
+
+// a2 b2 a3 b3 of each four.
+inline Wide high_pairs(Wide a, Wide b) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+#else
+  return __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+#endif
+}
+
+// Number `Place` of each four, four times.
+template <int Place>
+Wide four_of(Wide a) {
+  constexpr int p = Place;
+#ifdef __AVX512F__
+  return __builtin_shufflevector(a, a, p, p, p, p, 4 + p, 4 + p, 4 + p, 4 + p, 8 + p, 8 + p, 8 + p,
+                                 8 + p, 12 + p, 12 + p, 12 + p, 12 + p);
+#else
+  return __builtin_shufflevector(a, a, p, p, p, p, 4 + p, 4 + p, 4 + p, 4 + p);
+#endif
+}
+
+// Those of four views, from `first` on, four times each; those of four texels, for each view.
+inline Wide of_views(const Vec4& v, [[maybe_unused]] std::size_t first) {
+#ifdef __AVX512F__
+  using Int16 = std::int32_t __attribute__((vector_size(64)));
+  constexpr Int16 view{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+  return (Wide)_mm512_maskz_permutexvar_ps(0xFFFF, (__m512i)view,
+                                           _mm512_castps128_ps512((__m128)v));
+#else
+  return joined(Vec4{} + v[first], Vec4{} + v[first + 1]);
+#endif
+}
+inline Wide of_texels(const Vec4& v) {
+#ifdef __AVX512F__
+  return (Wide)_mm512_maskz_broadcast_f32x4(0xFFFF, (__m128)v);
+#else
+  return joined(v, v);
+#endif
+}
+
+// Sum of the fours.
+inline Vec4 sum_of_quads(Wide a) {
+#ifdef __AVX512F__
+  const Vec8 b = low_half(a) + high_half(a);
+#else
+  const Vec8 b = a;
+#endif
+  return __builtin_shufflevector(b, b, 0, 1, 2, 3) + __builtin_shufflevector(b, b, 4, 5, 6, 7);
+}
+
+// Four numbers of each of the fields; those of four texels side by side, view by view.
+struct Quad {
+  Wide x, y, z, w;
+};
+
+inline Quad transposed(const Rows& row) {
+  const Wide xy02 = low_pairs(row[0], row[2]);
+  const Wide xy13 = low_pairs(row[1], row[3]);
+  const Wide zw02 = high_pairs(row[0], row[2]);
+  const Wide zw13 = high_pairs(row[1], row[3]);
+  return {low_pairs(xy02, xy13), high_pairs(xy02, xy13), low_pairs(zw02, zw13),
+          high_pairs(zw02, zw13)};
+}
+
+// Equation 1, |w| max(<w, l> / |w|, 0)^n = <w, l> ((<w, l> / |w|)^2)^((n - 1) / 2) where <w, l> is
+// positive. A NaN stays one.
+inline Wide lobe(const Quad& q, const Direction& light) {
+  const Wide product = q.x * light.x + q.y * light.y + q.z * light.z;
+  const Wide square = q.x * q.x + q.y * q.y + q.z * q.z;
+  const Wide value = product * power_of(product * product / square, 0.5F * q.w - 0.5F);
+  return product <= 0.0F ? Wide{} : value;
+}
+
+}  // namespace
+
+// The fields that a query asks for, view + texel, and their weights.
+template <typename Number>
+struct FieldRepresentation::Fields {
+  std::array<const Number*, 4> view;
+  std::array<std::size_t, 4> texel;
+  Vec4 view_weight;
+  Vec4 texel_weight;
+
+  [[gnu::always_inline]] Rows quad(std::size_t first_view, std::size_t k) const {
+    Rows rows;
+    for (std::size_t t = 0; t < 4; ++t) {
+      std::array<const Number*, views_at_once> quads;
+      for (std::size_t v = 0; v < views_at_once; ++v)
+        quads[v] = view[first_view + v] + texel[t] + 4 * k;
+      rows[t] = row_of(quads);
+    }
+    return rows;
+  }
+};
+
+FieldRepresentation::FieldRepresentation(Model model)
+    : model_(std::move(model)), view_stencil_(model_.head.views) {
+  if (model_.storage == Storage::half) halfs_.assign(model_.fields.begin(), model_.fields.end());
+  for (std::size_t view = 0; view < model_.head.views.size(); ++view) {
+    const std::size_t first = view * model_.head.texels() * model_.floats_a_field();
+    if (halfs_.empty()) {
+      float_views_.push_back(&model_.fields[first]);
+    } else {
+      half_views_.push_back(&halfs_[first]);
+    }
+  }
+}
+
+template <typename Number>
+[[gnu::always_inline]] inline FieldRepresentation::Fields<Number> FieldRepresentation::fields(
+    const std::vector<const Number*>& of_view, const TexelStencil& texels,
+    const StencilLane& views) const {
+  const std::size_t stride = model_.floats_a_field();
+  Fields<Number> fields;
+  for (std::size_t i = 0; i < 4; ++i) {
+    fields.view[i] = of_view[static_cast<std::size_t>(views.index[i])];
+    fields.texel[i] = texels.index[i] * stride;
+  }
+  // One by one, as they were written: read together, they would have to wait for memory.
+  const auto& v = views.weight;
+  const auto& t = texels.weight;
+  fields.view_weight = Vec4{v[0], v[1], v[2], v[3]};
+  fields.texel_weight = Vec4{t[0], t[1], t[2], t[3]};
+  return fields;
+}
+
+// Each of RGB a polynomial, all views and texels of a row at once.
+template <typename Number>
+Vec4 FieldRepresentation::polynomials_of_rgb(const Fields<Number>& fields, const Direction& light) {
+  const float x = light.x;
+  const float y = light.y;
+  const std::array<float, 6> basis{x * x, y * y, x * y, x, y, 1};
+  Wide sum{};
+  for (std::size_t first = 0; first < 4; first += views_at_once) {
+    Rows value{};
+    for (std::size_t k = 0; k < basis.size(); ++k) {
+      const Rows quad = fields.quad(first, k);
+      for (std::size_t t = 0; t < 4; ++t) value[t] += quad[t] * basis[k];
+    }
+    const Wide weight = of_views(fields.view_weight, first);
+    for (std::size_t t = 0; t < 4; ++t)
+      sum += at_least_zero(value[t]) * (weight * fields.texel_weight[t]);
+  }
+  return sum_of_quads(sum);
+}
+
+// The sums of lobes of the fields. How many is known when it is compiled, so that they are computed
+// side by side.
+template <std::size_t Lobes, typename Fields>
+[[gnu::always_inline]] inline Wide sum_of_lobes(const Fields& fields, std::size_t first,
+                                                const Direction& light) {
+  Wide value{};
+  for (std::size_t k = 0; k < Lobes; ++k) value += lobe(transposed(fields.quad(first, k)), light);
+  return value;
+}
+
+template <typename Fields>
+[[gnu::always_inline]] inline Wide sum_of_lobes(std::size_t lobes, const Fields& fields,
+                                                std::size_t first, const Direction& light) {
+  if (lobes == 2) return sum_of_lobes<2>(fields, first, light);
+  if (lobes == 1) return sum_of_lobes<1>(fields, first, light);
+  return lobes == 3 ? sum_of_lobes<3>(fields, first, light) : sum_of_lobes<4>(fields, first, light);
+}
+
+// Lobes, or a polynomial, times a colour.
+template <typename Number>
+[[gnu::always_inline]] inline Vec4 FieldRepresentation::luminances(const Fields<Number>& fields,
+                                                                   const Direction& light) const {
+  const float x = light.x;
+  const float y = light.y;
+  Wide sum{};
+  for (std::size_t first = 0; first < 4; first += views_at_once) {
+    Wide value{};
+    if (model_.kind == Kind::lobes) {
+      value = sum_of_lobes(model_.lobes, fields, first, light);
+    } else {
+      const Quad a = transposed(fields.quad(first, 0));
+      const Quad b = transposed(fields.quad(first, 1));
+      value =
+          at_least_zero(a.x * (x * x) + a.y * (y * y) + a.z * (x * y) + a.w * x + b.x * y + b.y);
+    }
+    value *= of_views(fields.view_weight, first) * of_texels(fields.texel_weight);
+    const Rows colour = fields.quad(first, model_.quads() - 1);
+    sum += colour[0] * four_of<0>(value) + colour[1] * four_of<1>(value) +
+           colour[2] * four_of<2>(value) + colour[3] * four_of<3>(value);
+  }
+  return sum_of_quads(sum);
+}
+
+template <typename Number>
+[[gnu::always_inline]] inline Rgb FieldRepresentation::decode(const Fields<Number>& fields,
+                                                              const Direction& light) const {
+  const Vec4 rgb =
+      is_rgb(model_.kind) ? polynomials_of_rgb(fields, light) : luminances(fields, light);
+  return Rgb(rgb[0], rgb[1], rgb[2]) *
+         (has_cosine(model_.kind) ? model_.scale * light.z : model_.scale);
+}
+
+Rgb FieldRepresentation::evaluate(Texcoord uv, Direction light, Direction view,
+                                  float /*lod*/) const {
+  if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
+  const TexelStencil texels = bilinear_texels(uv, model_.head.width, model_.head.height);
+  const StencilLane views = view_stencil_.locate(model_.head.views, view);
+  return halfs_.empty() ? decode(fields(float_views_, texels, views), light)
+                        : decode(fields(half_views_, texels, views), light);
+}
+
+void FieldRepresentation::evaluate(std::span<const AppearanceQuery> queries,
+                                   std::span<Rgb> answers) const {
+  decode_in_batches(queries, answers, [this](const QueryBatch& batch) {
+    return halfs_.empty() ? decode(float_views_, batch) : decode(half_views_, batch);
+  });
+}
+
+template <typename Number>
+Batch<Rgb> FieldRepresentation::decode(const std::vector<const Number*>& of_view,
+                                       const QueryBatch& batch) const {
+  const TexelBatch texels = texel_batch(batch, model_.head.width, model_.head.height);
+  const StencilBatch views = view_stencil_.locate(model_.head.views, batch.view);
+  Batch<Rgb> values;
+  for (std::size_t i = 0; i < batch_lanes; ++i) {
+    const Direction light(batch.light.x[i], batch.light.y[i], batch.light.z[i]);
+    values[i] = decode(fields(of_view, texels.lane(i), views[i]), light);
+  }
+  return values;
+}
+
+std::size_t FieldRepresentation::constant_bytes() const {
+  std::size_t bytes = 0;
+  for (const GlTexture& table : view_stencil_.glsl(model_.head.views, "btf_any").textures)
+    bytes += table.bytes.size();
+  return bytes;
+}
+
+void FieldRepresentation::save(const std::filesystem::path& folder) const {
+  write_model(folder, model_);
+}
+
+}  // namespace weft::reflectance_fields

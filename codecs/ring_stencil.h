@@ -1,0 +1,71 @@
+// The four nearest of a sampling's directions that lies in rings, and their bilinear weights in
+// (theta, phi) (paper 003, section 5.4).
+//
+// Two rings around theta, two of each ring's directions around phi. The weights sum to one and are
+// continuous: at a ring the other has weight zero, at the pole there is one direction, and beyond
+// the last ring theta is held. That needs a direction at the pole, at most 31 rings of three or
+// more evenly spaced directions, and `Horizon::hold`; ubo81 and ubo151 are so. Any other sampling
+// is answered by its triangulation, three directions and a weight of zero.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "btf/hemisphere_sampling.h"
+#include "codecs/gl_program.h"
+#include "codecs/stencil_batch.h"
+
+namespace weft {
+
+class RingStencil {
+ public:
+  explicit RingStencil(const HemisphereSampling& sampling);
+
+  /// False where the triangulation answers.
+  bool has_rings() const { return ring_count_ > 0; }
+
+  /// @param sampling    that it was made of.
+  /// @param directions  sixteen unit vectors, z >= 0.
+  StencilBatch locate(const HemisphereSampling& sampling, const DirectionLanes& directions) const;
+  StencilLane locate(const HemisphereSampling& sampling, const Direction& direction) const;
+
+  /// `struct btf_QuadStencil { ivec4 index; vec4 weight; }` and `btf_QuadStencil
+  /// PREFIX_locate(vec3 direction)`, with its tables. Needs `direction_stencil_glsl()` before it.
+  GlProgram glsl(const HemisphereSampling& sampling, const std::string& prefix) const;
+
+ private:
+  static constexpr std::size_t most_rings = 32;
+  // Columns of `most_rings` numbers, so that a look-up is a permutation of two registers.
+  using Column = std::array<float, most_rings>;
+  struct Rings {
+    alignas(64) Column theta{};
+    alignas(64) Column cosine{};     ///< of theta
+    alignas(64) Column per_width{};  ///< 1 / (theta of the next ring - theta)
+    alignas(64) Column steps{};      ///< a radian
+    alignas(64) Column zero{};       ///< steps from the ring's first pair to phi = 0
+    alignas(64) Column first{};      ///< of the ring, in pairs_
+  };
+  /// Bilinear place: the upper ring's, then the lower's.
+  template <typename Floats>
+  struct Bilinear {
+    std::array<Floats, 2> pair;  ///< in pairs_
+    std::array<Floats, 4> weight;
+  };
+  template <typename Floats>
+  Bilinear<Floats> place(const Floats& x, const Floats& y, const Floats& z) const;
+  void append_ring(std::span<const std::uint16_t> directions, float theta, float first_phi);
+
+  std::size_t ring_count_ = 0;  // 0: the triangulation answers
+  Rings rings_;                 // the pole first, theta ascending
+  // Each ring's directions and their successors, ring by ring, phi ascending; twice around and a
+  // bit more, so that no phi has to be brought into a range.
+  std::vector<std::array<std::int32_t, 2>> pairs_;
+  std::vector<float> glsl_rings_;          // theta, first phi, count, first in order_
+  std::vector<std::uint16_t> glsl_order_;  // ring by ring, phi ascending
+  BatchLocator triangulation_;
+};
+
+}  // namespace weft

@@ -1,0 +1,109 @@
+// The four views of two rings: weights that sum to one, answer a sampled direction by itself, and
+// vary continuously; other samplings are answered by their triangulation.
+
+#include "codecs/ring_stencil.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+using namespace weft;
+
+namespace {
+
+HemisphereSampling named(const std::string& name) {
+  return HemisphereSampling(named_directions(name));
+}
+
+// Weight of each direction; those of several entries are added.
+std::map<int, float> weights(const HemisphereSampling& sampling, const RingStencil& rings,
+                             const Direction& direction) {
+  const StencilLane stencil = rings.locate(sampling, direction);
+  std::map<int, float> sum;
+  for (std::size_t k = 0; k < 4; ++k) sum[stencil.index[k]] += stencil.weight[k];
+  return sum;
+}
+
+float difference(const std::map<int, float>& a, const std::map<int, float>& b) {
+  float sum = 0;
+  for (const auto& [index, weight] : a)
+    sum += std::abs(weight - (b.contains(index) ? b.at(index) : 0));
+  for (const auto& [index, weight] : b) sum += a.contains(index) ? 0 : weight;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("ubo81 and ubo151 lie in rings, but regular, fibonacci and faded samplings do not") {
+  CHECK(RingStencil(named("ubo81")).has_rings());
+  CHECK(RingStencil(named("ubo151")).has_rings());
+  for (const std::string name : {"regular:3x6", "fibonacci:40", "fibonacci:1"})
+    CHECK(!RingStencil(named(name)).has_rings());
+  CHECK(!RingStencil(HemisphereSampling(named_directions("ubo81"), Horizon::fade)).has_rings());
+}
+
+TEST_CASE("A sampled view is answered by itself") {
+  for (const std::string name : {"ubo81", "ubo151", "regular:4x7"}) {
+    const HemisphereSampling sampling = named(name);
+    const RingStencil rings(sampling);
+    for (std::size_t i = 0; i < sampling.size(); ++i)
+      CHECK(weights(sampling, rings, sampling[i])[static_cast<int>(i)] == Approx(1).margin(2e-5));
+  }
+}
+
+TEST_CASE("Ring weights sum to one, and interpolate theta and phi bilinearly") {
+  for (const std::string name : {"ubo81", "ubo151"}) {
+    const HemisphereSampling sampling = named(name);
+    const RingStencil rings(sampling);
+    for (int i = 0; i < 2000; ++i) {
+      const double theta = radians(90 * std::fmod(0.618 * i, 1.0));
+      const double phi = radians(360 * std::fmod(0.755 * i, 1.0));
+      const StencilLane s = rings.locate(sampling, from_spherical(theta, phi));
+      double sum = 0;
+      double mean_theta = 0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        CHECK(s.weight[k] >= 0);
+        sum += s.weight[k];
+        mean_theta += s.weight[k] * theta_of(sampling[s.index[k]]);
+      }
+      CHECK(sum == Approx(1).margin(1e-6));
+      CHECK(mean_theta == Approx(std::min(theta, radians(75.0))).margin(1e-5));
+    }
+  }
+}
+
+TEST_CASE("Ring weights vary continuously across rings, spokes, the pole and the last ring") {
+  const HemisphereSampling sampling = named("ubo81");
+  const RingStencil rings(sampling);
+  constexpr double step = radians(0.02);
+  // Along meridians, through the pole; along circles, those of the rings too.
+  for (int k = 0; k < 24; ++k) {
+    const double phi = radians(15.0 * k + 0.1 * (k % 3));
+    auto before = weights(sampling, rings, from_spherical(0, phi));
+    for (double theta = 0; theta < radians(89.0); theta += step) {
+      const auto here = weights(sampling, rings, from_spherical(theta, phi));
+      CHECK(difference(here, before) < 0.01F);
+      before = here;
+    }
+    const double circle = radians(3.75 * k);
+    before = weights(sampling, rings, from_spherical(circle, 0));
+    for (double turn = 0; turn < radians(361.0); turn += step) {
+      const auto here = weights(sampling, rings, from_spherical(circle, turn));
+      CHECK(difference(here, before) < 0.01F);
+      before = here;
+    }
+  }
+}
+
+TEST_CASE("Where there are no rings the triangulation answers") {
+  const HemisphereSampling sampling = named("fibonacci:40");
+  const RingStencil rings(sampling);
+  for (int i = 0; i < 200; ++i) {
+    const Direction d = from_spherical(radians(90 * std::fmod(0.618 * i, 1.0)),
+                                       radians(360 * std::fmod(0.755 * i, 1.0)));
+    const Stencil expected = sampling.locate(d);
+    std::map<int, float> sum;
+    for (std::size_t k = 0; k < 3; ++k) sum[expected.index[k]] += expected.weight[k];
+    CHECK(difference(sum, weights(sampling, rings, d)) < 1e-4F);
+  }
+}
