@@ -13,9 +13,11 @@
 #include "btf/atomic_file.h"
 #include "btf/btf_file.h"
 #include "btf/direction.h"
+#include "btf/error.h"
 #include "cli/command.h"
 #include "codecs/raw/raw_representation.h"
 #include "codecs/representation.h"
+#include "study/asymmetry.h"
 
 namespace weft::cli {
 
@@ -98,7 +100,65 @@ void print(const ordered_json& value, const Session& session, const std::string&
   }
 }
 
-void info(const fs::path& folder, Session& session) {
+struct Options {
+  fs::path folder;
+  bool asymmetry = false;
+  std::vector<int> texel;
+};
+
+ordered_json describe_fields(const HemisphereSampling& sampling,
+                             const std::vector<double>& series) {
+  ordered_json rows = ordered_json::array();
+  for (std::size_t i = 0; i < series.size(); ++i)
+    rows.push_back({degrees(theta_of(sampling[i])), degrees(phi_of(sampling[i])), series[i]});
+  return {{"roughness", roughness(sampling, series)}, {"theta_phi_energy", rows}};
+}
+
+/// Figure 3 of paper 003, of one texel.
+ordered_json describe_asymmetry(const Options& options, bool raw) {
+  if (!raw) {
+    throw bad_input(options.folder.string(),
+                    "--asymmetry is of raw BTFs; this is a compressed one");
+  }
+  const Btf btf = read_btf(options.folder);
+  const std::vector<int> texel =
+      options.texel.empty() ? std::vector{btf.width() / 2, btf.height() / 2} : options.texel;
+  if (texel[0] < 0 || texel[0] >= btf.width() || texel[1] < 0 || texel[1] >= btf.height()) {
+    throw bad_input("--texel", fmt::format("{},{}; the BTF has {} x {} texels", texel[0], texel[1],
+                                           btf.width(), btf.height()));
+  }
+  const FieldEnergies energies = field_energies(btf, texel[0], texel[1]);
+  return {{"texel", texel},
+          {"asymmetry", asymmetry(btf, energies)},
+          {"light_fields", describe_fields(btf.lights(), energies.light_fields)},
+          {"reflectance_fields", describe_fields(btf.views(), energies.reflectance_fields)}};
+}
+
+void print_asymmetry(const ordered_json& told, const Session& session) {
+  const auto& light_fields = told["light_fields"];
+  const auto& reflectance_fields = told["reflectance_fields"];
+  session.say(fmt::format(
+      "\nEnergies of texel {}, 1/sr: sums of B / cos(theta_light) over all views, or all lights\n"
+      "asymmetry {:.3g}; roughness of light fields {:.3g}, of reflectance fields {:.3g}\n\n"
+      "{:>7} {:>7} {:>12}   {:>7} {:>7} {:>12}",
+      told["texel"].dump(), told["asymmetry"].get<double>(),
+      light_fields["roughness"].get<double>(), reflectance_fields["roughness"].get<double>(),
+      "theta_l", "phi_l", "light field", "theta_v", "phi_v", "refl. field"));
+  const auto row = [](const ordered_json& fields, std::size_t i) {
+    if (i >= fields["theta_phi_energy"].size()) return std::string();
+    const auto& r = fields["theta_phi_energy"][i];
+    return fmt::format("{:7.2f} {:7.2f} {:12.5g}", r[0].get<double>(), r[1].get<double>(),
+                       r[2].get<double>());
+  };
+  const std::size_t rows = std::max(light_fields["theta_phi_energy"].size(),
+                                    reflectance_fields["theta_phi_energy"].size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    session.say(fmt::format("{:28}   {}", row(light_fields, i), row(reflectance_fields, i)));
+  }
+}
+
+void info(const Options& options, Session& session) {
+  const fs::path& folder = options.folder;
   const bool raw = fs::exists(folder / "btf.json");
   ordered_json& measured = session.measured;
   measured["path"] = folder.string();
@@ -111,15 +171,27 @@ void info(const fs::path& folder, Session& session) {
     if (json.contains(key)) measured[key] = json[key];
   }
   print(measured, session, "");
+  if (options.asymmetry) {
+    measured["asymmetry"] = describe_asymmetry(options, raw);
+    print_asymmetry(measured["asymmetry"], session);
+  }
 }
 
 }  // namespace
 
 void add_info(CLI::App& app, Session& session) {
-  const auto folder = std::make_shared<fs::path>();
+  const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("info", "Tells what a dataset is");
-  command->add_option("dataset", *folder, "Dataset folder, raw or compressed")->required();
-  command->callback([folder, &session] { info(*folder, session); });
+  command->add_option("dataset", options->folder, "Dataset folder, raw or compressed")->required();
+  CLI::Option* asymmetry = command->add_flag(
+      "--asymmetry", options->asymmetry,
+      "Energy of each light field and each reflectance field of a texel of a raw BTF");
+  command
+      ->add_option("--texel", options->texel, "Column and row of that texel; default: the middle")
+      ->expected(2)
+      ->delimiter(',')
+      ->needs(asymmetry);
+  command->callback([options, &session] { info(*options, session); });
 }
 
 }  // namespace weft::cli

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "images/image_file.h"
@@ -14,6 +15,11 @@ using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 
 namespace {
+
+std::string read_bytes(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 struct Dataset {
   TemporaryFolder folder;
@@ -48,6 +54,49 @@ TEST_CASE("info tells the sizes of a raw and of a compressed dataset") {
   CHECK(compressed["ratio"].get<double>() ==
         Approx(3.0 * 4 * 2 * 7 * 7 / compressed["bytes"].get<double>()));
   CHECK(compressed.contains("parameters"));
+}
+
+TEST_CASE("info --asymmetry tells the energies of a texel's light fields and reflectance fields") {
+  const Dataset dataset;
+  // Column 2 of the upper row: albedo 0.7.
+  const auto told =
+      dataset.json({"info", "small.btf", "--asymmetry", "--texel", "2,0"})["asymmetry"];
+  CHECK(told["texel"] == nlohmann::json::array({2, 0}));
+  CHECK(told["asymmetry"].get<double>() == Approx(0).margin(1e-5));
+  for (const char* fields : {"light_fields", "reflectance_fields"}) {
+    CHECK(told[fields]["roughness"].get<double>() == Approx(0).margin(1e-5));
+    REQUIRE(told[fields]["theta_phi_energy"].size() == 7);
+    for (const auto& row : told[fields]["theta_phi_energy"])
+      CHECK(row[2].get<double>() == Approx(7 * 0.7 / std::numbers::pi).epsilon(1e-4));
+  }
+  CHECK_THAT(dataset.run({"info", "small.btf", "--asymmetry"}).out, Contains("theta_v"));
+  const Outcome outside = dataset.run({"info", "small.btf", "--asymmetry", "--texel", "4,0"});
+  CHECK(outside.exit_code == 2);
+  CHECK_THAT(outside.err, Contains("4,0") && Contains("4 x 2"));
+}
+
+TEST_CASE("compress continues an interrupted fit, and leaves no checkpoint") {
+  const Dataset dataset;
+  const auto fit = [&](const std::string& output) {
+    REQUIRE(dataset.run({"compress", "small.btf", "--codec", "lobes", "-o", output}).exit_code ==
+            0);
+    CHECK(!fs::exists(dataset.folder.path / (output + ".partial")));
+    return read_bytes(dataset.folder.path / output / "fields.exr");
+  };
+  const std::string whole = fit("whole.lobes");
+  // What a killed run of other data left is not taken, and goes.
+  fs::create_directories(dataset.folder.path / "b.lobes.partial");
+  std::ofstream(dataset.folder.path / "b.lobes.partial" / "checkpoint.json") << "{}";
+  std::ofstream(dataset.folder.path / "b.lobes.partial" / "view_000.f64") << "something";
+  CHECK(fit("b.lobes") == whole);
+  // And what is nobody's checkpoint stays.
+  fs::create_directories(dataset.folder.path / "c.lobes.partial");
+  std::ofstream(dataset.folder.path / "c.lobes.partial" / "letter.txt") << "dear";
+  const Outcome refused =
+      dataset.run({"compress", "small.btf", "--codec", "lobes", "-o", "c.lobes"});
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("c.lobes.partial"));
+  CHECK(fs::exists(dataset.folder.path / "c.lobes.partial" / "letter.txt"));
 }
 
 TEST_CASE("extract writes the values of one view and one light, +y up") {
