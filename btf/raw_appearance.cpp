@@ -81,16 +81,6 @@ inline Rgb blended(std::span<const Value> values, std::size_t n_texels, std::siz
 
 }  // namespace
 
-TexelStencil bilinear_texels(Texcoord uv, int width, int height) {
-  const AxisStencil x = column_stencil(uv, width);
-  const AxisStencil y = row_stencil(uv, height);
-  const std::uint32_t low = y.low * static_cast<std::uint32_t>(width);
-  const std::uint32_t high = y.high * static_cast<std::uint32_t>(width);
-  return {{low + x.low, low + x.high, high + x.low, high + x.high},
-          {(1 - x.blend) * (1 - y.blend), x.blend * (1 - y.blend), (1 - x.blend) * y.blend,
-           x.blend * y.blend}};
-}
-
 SampleStencil sample_stencil(const Stencil& views, const Stencil& lights,
                              std::span<const float> of_light, float factor) {
   SampleStencil samples;

@@ -64,7 +64,15 @@ struct TexelStencil {
   std::array<std::uint32_t, 4> index;
   std::array<float, 4> weight;
 };
-TexelStencil bilinear_texels(Texcoord uv, int width, int height);
+inline TexelStencil bilinear_texels(Texcoord uv, int width, int height) {
+  const AxisStencil x = column_stencil(uv, width);
+  const AxisStencil y = row_stencil(uv, height);
+  const std::uint32_t low = y.low * static_cast<std::uint32_t>(width);
+  const std::uint32_t high = y.high * static_cast<std::uint32_t>(width);
+  return {{low + x.low, low + x.high, high + x.low, high + x.high},
+          {(1 - x.blend) * (1 - y.blend), x.blend * (1 - y.blend), (1 - x.blend) * y.blend,
+           x.blend * y.blend}};
+}
 
 /// Which samples of a texel's ABRDF a query blends: index = view n_lights + light, and its weight.
 /// View v and light l of three each are at 4 v + l; places 4 v + 3 are not used, or weigh nothing.
