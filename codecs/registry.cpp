@@ -20,6 +20,7 @@
 #include "codecs/ptm/ptm.h"
 #include "codecs/raw/raw.h"
 #include "codecs/representation.h"
+#include "codecs/srbf/srbf.h"
 #include "settings/nearest_name.h"
 
 namespace weft {
@@ -37,7 +38,7 @@ std::string hint_for(const std::string& name) {
 std::span<const Codec> codecs() {
   static const std::array table{raw_codec(),      cmf_codec(),       hf_codec(),   pca_codec(),
                                 pca_view_codec(), laplacian_codec(), dfmf_codec(), lobes_codec(),
-                                ptm_codec(),      lafortune_codec()};
+                                ptm_codec(),      lafortune_codec(), srbf_codec()};
   return table;
 }
 

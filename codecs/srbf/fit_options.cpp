@@ -1,0 +1,66 @@
+// The parameters of an SRBF fit: their names, defaults and ranges.
+
+#include <nlohmann/json.hpp>
+
+#include "codecs/srbf/fit.h"
+
+namespace weft::srbf {
+
+FitOptions fit_options(const Settings& parameters) {
+  FitOptions options;
+  const auto count = [&](const char* key, std::int64_t fallback, std::int64_t least,
+                         std::int64_t most) {
+    return static_cast<int>(parameters.integer(key, fallback, least, most));
+  };
+  options.kernels = static_cast<std::size_t>(count("kernels", 20, 1, 64));
+  const std::string modes = parameters.choice("modes", mode_names());
+  const auto modes_a_kernel = static_cast<std::size_t>(count("modes_a_kernel", 3, 1, most_modes));
+  options.modes = modes_named(modes, modes_a_kernel, parameters.flag("multivariate", true));
+  options.quantity =
+      parameters.choice("quantity", {"B", "f"}) == "f" ? Quantity::over_cosine : Quantity::radiance;
+  options.storage = storage_parameter(parameters);
+  options.iterations = count("iterations", options.iterations, 1, 10000);
+  options.starts = count("starts", options.starts, 1, 100);
+  options.sweeps = count("sweeps", options.sweeps, 0, 100);
+  options.mip_weight = parameters.number("mip_weight", options.mip_weight, 0, 1e6);
+  options.smooth_weight = parameters.number("smooth_weight", options.smooth_weight, 0, 1e6);
+  options.robust = parameters.flag("robust", options.robust);
+  options.restarts = parameters.flag("restarts", options.restarts);
+  parameters.finish();
+  return options;
+}
+
+std::string parameter_help() {
+  return "bits = half               half | 8 | float: what the textures hold\n"
+         "iterations = 60           of L-BFGS, each time that a texel is fitted\n"
+         "kernels = 20              J, 1 to 64\n"
+         "mip_weight = 0            c_mip: pull towards the parent's numbers\n"
+         "modes = optimal           optimal: angles are fitted; or fixed: half-half-half | "
+         "half-difference | half-light-view | in-out\n"
+         "modes_a_kernel = 3        K of `optimal`, 1 to 4\n"
+         "multivariate = true       false: one mode a kernel (the univariate SRBF)\n"
+         "quantity = B              B, or f = B / cos(theta_light): what the kernels sum up to\n"
+         "restarts = true           from a neighbour's kernels, where they fit a texel better\n"
+         "robust = true             neighbours across an edge don't pull; false: the paper\n"
+         "smooth_weight = 0         c_smooth: pull towards the 5 x 5 neighbours' numbers\n"
+         "starts = 6                descents at the top level, each from another guess\n"
+         "sweeps = 1                over a level, after the one that starts from its parents\n";
+}
+
+std::string to_json(const FitOptions& options) {
+  return nlohmann::json{{"bits", name_of(options.storage)},
+                        {"iterations", options.iterations},
+                        {"kernels", options.kernels},
+                        {"mip_weight", options.mip_weight},
+                        {"modes", options.modes.name},
+                        {"modes_a_kernel", options.modes.angles.size()},
+                        {"quantity", options.quantity == Quantity::radiance ? "B" : "f"},
+                        {"restarts", options.restarts},
+                        {"robust", options.robust},
+                        {"smooth_weight", options.smooth_weight},
+                        {"starts", options.starts},
+                        {"sweeps", options.sweeps}}
+      .dump();
+}
+
+}  // namespace weft::srbf

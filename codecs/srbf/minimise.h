@@ -1,0 +1,23 @@
+// Limited-memory BFGS, by libLBFGS.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace weft::srbf {
+
+struct DescentLimits {
+  int iterations = 100;
+  int memory = 12;         ///< pairs of steps and gradients that are kept
+  double decrease = 1e-3;  ///< ends where ten iterations lower the value by less, relatively
+};
+
+/// Lowers `value`, which answers f(x) and writes its gradient, from `x` on, which it replaces by
+/// the best point found: never a worse one than at the start.
+/// @return whether the end is finite and the search did not break off at its start.
+bool minimise(std::span<double> x,
+              const std::function<double(std::span<const double>, std::span<double>)>& value,
+              const DescentLimits& limits);
+
+}  // namespace weft::srbf

@@ -1,0 +1,52 @@
+// Fitted kernels that can be evaluated at any level of detail, saved and given to the GPU.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "codecs/representation.h"
+#include "codecs/srbf/model.h"
+
+namespace weft::srbf {
+
+class SrbfRepresentation : public Representation {
+ public:
+  explicit SrbfRepresentation(Model model);
+
+  using Appearance::evaluate;
+  /// Blends the numbers of four texels, of two levels where lod lies between, as a GPU filters
+  /// them, and evaluates them once; values below 0 become 0. There is no table of directions.
+  Rgb evaluate(Texcoord uv, Direction light, Direction view, float lod) const override;
+  void evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const override;
+  bool has_lod() const override { return true; }
+  Imath::V2i texels() const override { return {model_.head.width, model_.head.height}; }
+
+  std::size_t bytes() const override { return model_.bytes(); }
+  std::size_t constant_bytes() const override { return model_.scale.size() * sizeof(float); }
+  const HemisphereSampling& views() const override { return model_.head.views; }
+  const HemisphereSampling& lights() const override { return model_.head.lights; }
+  std::string codec() const override { return "srbf"; }
+  void save(const std::filesystem::path& folder) const override;
+  GlProgram gl_program() const override;
+
+  const Model& model() const { return model_; }
+
+ private:
+  struct Rows;
+  Rows rows_around(Texcoord uv, float lod) const;
+  void prefetch(const Rows& rows) const;
+  template <std::size_t K>
+  Rgb decode(const Rows& rows, const Direction& light, const Direction& view) const;
+  template <std::size_t K>
+  void decode_all(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
+
+  Model model_;
+  std::size_t sixteens_;   // groups of sixteen kernels; the rest are quads
+  std::size_t angles_at_;  // in a row
+  std::size_t row_;        // numbers of a texel, a multiple of sixteen
+  std::vector<float>
+      rows_;  // [level][texel][row_], times scale: [sixteen][slot][16], [quad][slot][4], angles
+  std::vector<std::size_t> first_texel_;  // of each level
+};
+
+}  // namespace weft::srbf
