@@ -9,7 +9,7 @@ namespace weft::srbf {
 
 struct DescentLimits {
   int iterations = 100;
-  int memory = 12;         ///< pairs of steps and gradients that are kept
+  int memory = 20;         ///< pairs of steps and gradients that are kept
   double decrease = 1e-3;  ///< ends where ten iterations lower the value by less, relatively
 };
 

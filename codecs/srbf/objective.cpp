@@ -172,6 +172,16 @@ void Objective::solve_colours(Kernels& kernels) const {
   }
 }
 
+std::vector<double> Objective::gaussian_squares() const {
+  std::vector<double> squares(shape_.kernels);
+  for (std::size_t j = 0; j < squares.size(); ++j) {
+    const float* sum =
+        &normal_[tile_index(j / tile, j / tile) + (j % tile * tile + j % tile) * lanes];
+    squares[j] = sum_of(load<Vec16>(sum)) / numbers_;
+  }
+  return squares;
+}
+
 // Errors of a block, squared; and the sums that the gradient is made of.
 template <std::size_t K>
 double Objective::add_errors(const Kernels& kernels, std::size_t block, bool with_gradient,

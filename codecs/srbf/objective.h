@@ -50,6 +50,9 @@ class Objective {
   /// unknowns, 0 for the angles unless `free_angles`.
   Value operator()(Kernels& kernels, std::span<double> gradient, bool free_angles);
 
+  /// Mean square of each kernel's Gaussian over the samples, as last evaluated.
+  std::vector<double> gaussian_squares() const;
+
  private:
   template <std::size_t K>
   Value run(Kernels& kernels, std::span<double> gradient, bool free_angles);

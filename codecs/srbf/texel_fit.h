@@ -35,6 +35,7 @@ class TexelFitter {
 
  private:
   TexelFit descend(const TexelFit& start, const DescentLimits& limits, bool free_angles);
+  std::vector<double> units(const Kernels& kernels) const;
   Kernels guess_of_peaks();
   std::size_t largest_error(const Kernels& kernels) const;
 
