@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "codecs/fit_checkpoint.h"
 #include "codecs/sample_check.h"
 #include "codecs/srbf/level_fit.h"
 
@@ -14,6 +17,12 @@ namespace weft::srbf {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// Raised when a fit makes something else of the same data.
+constexpr int fit_version = 1;
+
+// Of black data, so that nothing is divided by 0.
+constexpr double smallest_scale = 1e-30;
 
 // Mean square of a level's data.
 double mean_square(const MipLevels& data, const Samples& samples, int level) {
@@ -42,6 +51,42 @@ Json level_report(int level, const LevelResult& result, double scale, double squ
           {"restarts", result.restarts}};
 }
 
+// A level as doubles: of each texel its numbers, then what the level tells of itself.
+std::vector<double> packed(const LevelResult& result) {
+  std::vector<double> values;
+  for (const Kernels& kernels : result.kernels)
+    values.insert(values.end(), kernels.values().begin(), kernels.values().end());
+  values.insert(values.end(), {result.squared_error, static_cast<double>(result.fallbacks),
+                               static_cast<double>(result.restarts)});
+  return values;
+}
+
+LevelResult unpacked(const std::vector<double>& values, const Shape& shape) {
+  LevelResult result;
+  auto at = values.begin();
+  while (values.end() - at >= static_cast<std::ptrdiff_t>(shape.numbers())) {
+    Kernels kernels(shape);
+    std::copy_n(at, shape.numbers(), kernels.values().begin());
+    at += static_cast<std::ptrdiff_t>(shape.numbers());
+    result.kernels.push_back(std::move(kernels));
+  }
+  result.squared_error = at[0];
+  result.fallbacks = static_cast<std::size_t>(at[1]);
+  result.restarts = static_cast<std::size_t>(at[2]);
+  return result;
+}
+
+// The level as an earlier run left it, or fitted now.
+LevelResult kept_or_fitted(const FitCheckpoint& checkpoint, const std::string& name,
+                           const Shape& shape, std::size_t texels,
+                           const std::function<LevelResult()>& fitted) {
+  if (const auto kept = checkpoint.find(name, texels * shape.numbers() + 3))
+    return unpacked(*kept, shape);
+  LevelResult result = fitted();
+  checkpoint.keep(name, packed(result));
+  return result;
+}
+
 }  // namespace
 
 Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
@@ -50,25 +95,43 @@ Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
   model.storage = options.storage;
   model.shape = {options.kernels, options.modes.angles.size()};
   model.quantity = options.quantity;
+  const FitCheckpoint checkpoint =
+      FitCheckpoint::of_fit(progress.kept_in(), btf, "srbf", fit_version, model.head.parameters);
   const Samples samples(btf.views(), btf.lights(), options.quantity);
   const MipLevels data(btf);
   const MipSizes& sizes = data.sizes();
-  // The smallest float that is no worse for being divided by.
-  const double scale = std::max(std::sqrt(mean_square(data, samples, 0)), 1e-30);
+  const double scale = std::max(std::sqrt(mean_square(data, samples, 0)), smallest_scale);
 
   Json levels = Json::array();
-  std::string so_far;
   std::vector<Kernels> kernels;  // level 0 first
   std::vector<Kernels> parents;
+  // Levels of the modes that the angles begin with: free angles start from these, too, so that they
+  // end no worse.
+  std::vector<Kernels> fixed_parents;
+  FitOptions fixed = options;
+  fixed.modes.free = false;
+  fixed.sweeps = 0;
+  double fallbacks = 0;
   for (int level = sizes.levels() - 1; level >= 0; --level) {
-    const int sweeps = parents.empty() ? 1 : 1 + options.sweeps;
-    progress.start(static_cast<std::int64_t>(sizes.texels(level)) * sweeps,
-                   fmt::format("texels of level {}{}", level, so_far));
-    LevelResult result = fit_level(data, samples, options, level, parents, scale, progress);
+    const auto fitted = [&](const std::string& kind, const FitOptions& how,
+                            const std::vector<Kernels>& from, const std::vector<Kernels>& hints) {
+      return kept_or_fitted(
+          checkpoint, fmt::format("{}_{}", kind, level), model.shape, sizes.texels(level), [&] {
+            const int sweeps = from.empty() ? 1 : 1 + how.sweeps;
+            progress.start(static_cast<std::int64_t>(sizes.texels(level)) * sweeps,
+                           fmt::format("texels of {} {}", kind, level));
+            return fit_level(data, samples, how, level, from, hints, scale, progress);
+          });
+    };
+    if (options.modes.free) fixed_parents = fitted("fixed_level", fixed, fixed_parents, {}).kernels;
+    LevelResult result = fitted("level", options, parents, fixed_parents);
     levels.insert(levels.begin(),
                   level_report(level, result, scale, mean_square(data, samples, level)));
-    so_far = fmt::format(" (level {}: {:.2f} % off)", level,
-                         100 * levels.front().at("relative_rmse").get<double>());
+    const double error = levels.front().at("relative_rmse");
+    fallbacks += static_cast<double>(result.fallbacks);
+    progress.note(fmt::format("level {}: {:.2f} % off", level, 100 * error));
+    progress.report("relative_rmse_before_rounding", error);
+    progress.report("texels_that_fell_back", fallbacks);
     kernels.insert(kernels.begin(), result.kernels.begin(), result.kernels.end());
     parents = std::move(result.kernels);
   }

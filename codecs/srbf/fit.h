@@ -16,8 +16,8 @@ struct FitOptions {
   Modes modes;
   Quantity quantity = Quantity::radiance;
   Storage storage = Storage::half;
-  int iterations = 60;       ///< of L-BFGS, a descent below the top
-  int starts = 6;            ///< descents at the top, each from another guess
+  int iterations = 100;      ///< of L-BFGS, a descent below the top
+  int starts = 4;            ///< descents at the top, each from another guess
   int sweeps = 1;            ///< over a level, after the one that starts from its parents
   double mip_weight = 0;     ///< c_mip of equation 3.13
   double smooth_weight = 0;  ///< c_smooth of equation 3.14

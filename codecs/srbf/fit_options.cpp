@@ -32,7 +32,7 @@ FitOptions fit_options(const Settings& parameters) {
 
 std::string parameter_help() {
   return "bits = half               half | 8 | float: what the textures hold\n"
-         "iterations = 60           of L-BFGS, each time that a texel is fitted\n"
+         "iterations = 100          of L-BFGS, each time that a texel is fitted\n"
          "kernels = 20              J, 1 to 64\n"
          "mip_weight = 0            c_mip: pull towards the parent's numbers\n"
          "modes = optimal           optimal: angles are fitted; or fixed: half-half-half | "
@@ -43,7 +43,7 @@ std::string parameter_help() {
          "restarts = true           from a neighbour's kernels, where they fit a texel better\n"
          "robust = true             neighbours across an edge don't pull; false: the paper\n"
          "smooth_weight = 0         c_smooth: pull towards the 5 x 5 neighbours' numbers\n"
-         "starts = 6                descents at the top level, each from another guess\n"
+         "starts = 4                descents at the top level, each from another guess\n"
          "sweeps = 1                over a level, after the one that starts from its parents\n";
 }
 

@@ -63,12 +63,13 @@ class PullSum {
 class LevelFit {
  public:
   LevelFit(const MipLevels& data, const Samples& samples, const FitOptions& options, int level,
-           const std::vector<Kernels>& parents, double scale)
+           const std::vector<Kernels>& parents, const std::vector<Kernels>& hints, double scale)
       : data_(data),
         samples_(samples),
         options_(options),
         level_(level),
         parents_(parents),
+        hints_(hints),
         scale_(scale),
         width_(data.sizes().width_of(level)),
         height_(data.sizes().height_of(level)),
@@ -109,7 +110,7 @@ class LevelFit {
 
   TexelFit from_scratch(std::size_t texel) {
     return workspace_at(texel).fitter.from_scratch(
-        options_.starts, {.iterations = 10 * options_.iterations, .decrease = 2e-4});
+        options_.starts, {.iterations = 4 * options_.iterations, .decrease = 2e-4});
   }
 
   TexelFit from_parents(std::size_t texel) {
@@ -125,7 +126,13 @@ class LevelFit {
     pulls.add(parents_[own], options_.mip_weight);
     Workspace& workspace = workspace_at(texel);
     workspace.fitter.set_pull(pulls.pull());
-    return best_of(texel, workspace.fitter, starts, nullptr);
+    TexelFit best = best_of(texel, workspace.fitter, starts, nullptr);
+    if (hints_.empty()) return best;
+    TexelFit other = workspace.fitter.descend(workspace.fitter.as_it_is(hints_[texel]),
+                                              {.iterations = options_.iterations});
+    if (!(other.value.total < best.value.total)) return best;
+    restarted_[texel] = 1;
+    return other;
   }
 
   TexelFit from_neighbours(std::size_t texel) {
@@ -211,6 +218,7 @@ class LevelFit {
   const FitOptions& options_;
   int level_;
   const std::vector<Kernels>& parents_;
+  const std::vector<Kernels>& hints_;
   double scale_;
   int width_;
   int height_;
@@ -223,9 +231,9 @@ class LevelFit {
 }  // namespace
 
 LevelResult fit_level(const MipLevels& data, const Samples& samples, const FitOptions& options,
-                      int level, const std::vector<Kernels>& parents, double scale,
-                      Progress& progress) {
-  return LevelFit(data, samples, options, level, parents, scale).run(progress);
+                      int level, const std::vector<Kernels>& parents,
+                      const std::vector<Kernels>& hints, double scale, Progress& progress) {
+  return LevelFit(data, samples, options, level, parents, hints, scale).run(progress);
 }
 
 }  // namespace weft::srbf

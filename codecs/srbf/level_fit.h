@@ -19,9 +19,10 @@ struct LevelResult {
 };
 
 /// @param parents  kernels of level + 1; empty at the top, which starts from scratch.
+/// @param hints    another start for each texel; may be empty.
 /// @param scale    what data are divided by.
 LevelResult fit_level(const MipLevels& data, const Samples& samples, const FitOptions& options,
-                      int level, const std::vector<Kernels>& parents, double scale,
-                      Progress& progress);
+                      int level, const std::vector<Kernels>& parents,
+                      const std::vector<Kernels>& hints, double scale, Progress& progress);
 
 }  // namespace weft::srbf

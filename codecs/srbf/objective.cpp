@@ -160,7 +160,7 @@ void Objective::solve_colours(Kernels& kernels) const {
           &normal_[tile_index(i / tile, j / tile) + (i % tile * tile + j % tile) * lanes];
       matrix(i, j) = matrix(j, i) = sum_of(load<Vec16>(sum)) / numbers_;
     }
-    matrix(i, i) += ridge_.colour + weight;
+    matrix(i, i) += ridge_.share * matrix(i, i) + ridge_.colour + weight;
     for (std::size_t c = 0; c < 3; ++c) {
       right(i, c) = sum_of(load<Vec16>(&right_[(3 * i + c) * lanes])) / numbers_;
       if (weight > 0) right(i, c) += weight * pull_.target[shape_.unknowns() + 3 * i + c];
@@ -190,7 +190,11 @@ double Objective::add_errors(const Kernels& kernels, std::size_t block, bool wit
   alignas(64) std::array<float, 3 * K * block_samples> psi;
   std::array<float, 3 * 64> colour;
   std::array<float, 3 * K * 64> centre;
-  for (std::size_t m = 0; m < 3 * n; ++m) colour[m] = static_cast<float>(kernels.colours()[m]);
+  std::array<float, 64> ridge{};
+  for (std::size_t m = 0; m < 3 * n; ++m) {
+    colour[m] = static_cast<float>(kernels.colours()[m]);
+    ridge[m / 3] += static_cast<float>(ridge_.share) * colour[m] * colour[m];
+  }
   for (std::size_t m = 0; m < 3 * K * n; ++m) centre[m] = static_cast<float>(kernels.values()[m]);
   const Turns<K> turns(kernels.angles());
   const float* g = gaussians(block);
@@ -209,10 +213,10 @@ double Objective::add_errors(const Kernels& kernels, std::size_t block, bool wit
     if (!with_gradient) continue;
     std::array<Vec16, 3 * K> pulled{};  // sum over j of share_j p_j
     for (std::size_t j = 0; j < n; ++j) {
-      Vec16 share = error[0] * colour[3 * j];
-      share += error[1] * colour[3 * j + 1];
-      share += error[2] * colour[3 * j + 2];
-      share *= load<Vec16>(g + j * block_samples + i * lanes);
+      const Vec16 gaussian = load<Vec16>(g + j * block_samples + i * lanes);
+      Vec16 share = gaussian * ridge[j];
+      for (std::size_t c = 0; c < 3; ++c) share += error[c] * colour[3 * j + c];
+      share *= gaussian;
       store(&shares_[j * block_samples + i * lanes], share);
       for (std::size_t m = 0; free_angles && m < 3 * K; ++m)
         pulled[m] += share * centre[3 * K * j + m];
@@ -273,6 +277,9 @@ Objective::Value Objective::with_penalties(const Kernels& kernels, double square
     value.total += weight * difference * difference;
     if (i < gradient.size()) gradient[i] += 2 * weight * difference;
   };
+  const std::vector<double> own = gaussian_squares();
+  for (std::size_t i = 0; i < shape_.colours(); ++i)
+    value.total += ridge_.share * own[i / 3] * std::pow(kernels.colours()[i], 2);
   for (std::size_t i = 0; i < shape_.centres(); ++i) add(i, ridge_.centre, 0);
   for (std::size_t i = shape_.unknowns(); i < x.size(); ++i) add(i, ridge_.colour, 0);
   const PullWeights& weight = pull_.weight;

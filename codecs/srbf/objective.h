@@ -27,10 +27,12 @@ struct Pull {
   std::vector<double> target;
 };
 
-/// Keeps numbers bounded where the data do not: weights of |p|^2 and |F|^2.
+/// Keeps numbers bounded where the data do not: weights of |p|^2, |F|^2, and of each kernel's own
+/// mean square over the samples, |F|^2 mean(G^2).
 struct Ridge {
-  double centre = 1e-8;
-  double colour = 1e-5;
+  double centre = 1e-10;
+  double colour = 1e-9;
+  double share = 2e-6;
 };
 
 class Objective {
