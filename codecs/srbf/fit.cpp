@@ -129,7 +129,6 @@ Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
                   level_report(level, result, scale, mean_square(data, samples, level)));
     const double error = levels.front().at("relative_rmse");
     fallbacks += static_cast<double>(result.fallbacks);
-    progress.note(fmt::format("level {}: {:.2f} % off", level, 100 * error));
     progress.report("relative_rmse_before_rounding", error);
     progress.report("texels_that_fell_back", fallbacks);
     kernels.insert(kernels.begin(), result.kernels.begin(), result.kernels.end());

@@ -1,10 +1,11 @@
 #include "codecs/srbf/level_fit.h"
 
+#include <fmt/core.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <cmath>
 
 namespace weft::srbf {
@@ -86,11 +87,15 @@ class LevelFit {
     const int sweeps = parents_.empty() ? 0 : options_.sweeps;
     for (int sweep = 0; sweep <= sweeps; ++sweep) {
       std::vector<TexelFit> next(fits_.size());
+      std::atomic<double> error = 0;  // shown only: what is added up in no certain order
+      std::atomic<int> done = 0;
       tbb::parallel_for(std::size_t{0}, fits_.size(), [&](std::size_t texel) {
         next[texel] = parents_.empty() ? from_scratch(texel)
                       : sweep == 0     ? from_parents(texel)
                                        : from_neighbours(texel);
         fell_back_[texel] |= next[texel].fell_back ? 1 : 0;
+        const double so_far = error += next[texel].value.data;
+        progress.note(fmt::format("RMSE {:.3g} 1/sr", scale_ * std::sqrt(so_far / ++done)));
         progress.advance(1);
       });
       fits_ = std::move(next);
