@@ -94,9 +94,9 @@ TexelFit TexelFitter::descend(const TexelFit& start, const DescentLimits& limits
   const bool ended = minimise(x, value, limits);
   set_unknowns(x);
   TexelFit end = as_it_is(std::move(tried));
-  if (ended && is_finite(end) && !(end.value.total > start.value.total)) return end;
-  end = start;
-  end.fell_back = true;
+  const bool diverged = !ended || !is_finite(end);
+  if (diverged || end.value.total > start.value.total) end = start;
+  end.fell_back = diverged;
   return end;
 }
 

@@ -12,7 +12,7 @@ namespace weft::srbf {
 struct TexelFit {
   Kernels kernels;
   Objective::Value value;
-  bool fell_back = false;  ///< a descent ended in nothing finite, or nothing better than its start
+  bool fell_back = false;  ///< a descent ended in nothing finite
 };
 
 class TexelFitter {
