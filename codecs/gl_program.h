@@ -9,7 +9,9 @@ namespace weft {
 
 /// One texture. `buffer` is a texture buffer (samplerBuffer, texelFetch by index) of `width`
 /// texels; `image_2d` and `array_2d` are fetched with texelFetch too, row 0 first in `bytes`, no
-/// padding.
+/// padding. An `array_2d` of several `levels` (each half as wide and high, rounded down, at least
+/// 1; all layers of one level after those of the one before) is filtered trilinearly by the GPU
+/// and repeats: `textureLod`.
 struct GlTexture {
   enum class Kind { buffer, image_2d, array_2d };
   enum class Format {
@@ -40,6 +42,7 @@ struct GlTexture {
   int height = 1;
   int layers = 1;
   std::vector<std::byte> bytes;
+  int levels = 1;
 };
 
 std::size_t bytes_per_texel(GlTexture::Format format);

@@ -77,11 +77,18 @@ void refuse_above(int found, GLenum limit_name, const std::string& doing, const 
   }
 }
 
+int level_side(int side, int level) {
+  return std::max(side >> level, 1);
+}
+
 void check_size(const GlTexture& t, const std::string& doing) {
   if (t.width < 1 || t.height < 1 || t.layers < 1) {
     throw failed(doing, fmt::format("has a size of {} x {} x {}", t.width, t.height, t.layers));
   }
-  std::size_t texels = static_cast<std::size_t>(t.width) * t.height * t.layers;
+  std::size_t texels = 0;
+  for (int level = 0; level < t.levels; ++level)
+    texels += static_cast<std::size_t>(level_side(t.width, level)) * level_side(t.height, level) *
+              t.layers;
   if (t.kind == GlTexture::Kind::buffer) texels = static_cast<std::size_t>(t.width);
   if (const std::size_t expected = texels * bytes_per_texel(t.format); t.bytes.size() != expected) {
     throw failed(doing,
@@ -105,6 +112,24 @@ void check_size(const GlTexture& t, const std::string& doing) {
 void set_nearest(GLuint texture) {
   glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+void set_trilinear(GLuint texture) {
+  glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(texture, GL_TEXTURE_WRAP_S, GL_REPEAT);
+  glTextureParameteri(texture, GL_TEXTURE_WRAP_T, GL_REPEAT);
+}
+
+void upload_levels(GLuint texture, const GlTexture& t, const GlFormat& format) {
+  const std::byte* bytes = t.bytes.data();
+  for (int level = 0; level < t.levels; ++level) {
+    const int width = level_side(t.width, level);
+    const int height = level_side(t.height, level);
+    glTextureSubImage3D(texture, level, 0, 0, 0, width, height, t.layers, format.components,
+                        format.type, bytes);
+    bytes += bytes_per_texel(t.format) * width * height * t.layers;
+  }
 }
 
 std::string sampler_declaration(const GlTexture& texture, std::size_t unit) {
@@ -151,11 +176,14 @@ GpuAppearance::Texture GpuAppearance::upload(const GlTexture& t, const std::stri
       break;
     case GlTexture::Kind::array_2d:
       result.array = GlTextureName<GL_TEXTURE_2D_ARRAY>::make();
-      glTextureStorage3D(result.array.name(), 1, format.internal, t.width, t.height, t.layers);
+      glTextureStorage3D(result.array.name(), t.levels, format.internal, t.width, t.height,
+                         t.layers);
       check_gl(doing);
-      glTextureSubImage3D(result.array.name(), 0, 0, 0, 0, t.width, t.height, t.layers,
-                          format.components, format.type, t.bytes.data());
-      set_nearest(result.array.name());
+      upload_levels(result.array.name(), t, format);
+      if (t.levels > 1)
+        set_trilinear(result.array.name());
+      else
+        set_nearest(result.array.name());
       break;
   }
   check_gl(doing);

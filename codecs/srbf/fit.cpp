@@ -95,6 +95,7 @@ Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
   model.storage = options.storage;
   model.shape = {options.kernels, options.modes.angles.size()};
   model.quantity = options.quantity;
+  model.filtering = options.filtering;
   const FitCheckpoint checkpoint =
       FitCheckpoint::of_fit(progress.kept_in(), btf, "srbf", fit_version, model.head.parameters);
   const Samples samples(btf.views(), btf.lights(), options.quantity);

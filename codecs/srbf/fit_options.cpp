@@ -19,6 +19,9 @@ FitOptions fit_options(const Settings& parameters) {
   options.quantity =
       parameters.choice("quantity", {"B", "f"}) == "f" ? Quantity::over_cosine : Quantity::radiance;
   options.storage = storage_parameter(parameters);
+  options.filtering = parameters.choice("filtering", {"exact", "hardware"}) == "hardware"
+                          ? Filtering::hardware
+                          : Filtering::exact;
   options.iterations = count("iterations", options.iterations, 1, 10000);
   options.starts = count("starts", options.starts, 1, 100);
   options.sweeps = count("sweeps", options.sweeps, 0, 100);
@@ -32,6 +35,7 @@ FitOptions fit_options(const Settings& parameters) {
 
 std::string parameter_help() {
   return "bits = half               half | 8 | float: what the textures hold\n"
+         "filtering = exact         on the GPU; hardware: by its own filter, faster and coarser\n"
          "iterations = 100          of L-BFGS, each time that a texel is fitted\n"
          "kernels = 20              J, 1 to 64\n"
          "mip_weight = 0            c_mip: pull towards the parent's numbers\n"
@@ -49,6 +53,7 @@ std::string parameter_help() {
 
 std::string to_json(const FitOptions& options) {
   return nlohmann::json{{"bits", name_of(options.storage)},
+                        {"filtering", options.filtering == Filtering::exact ? "exact" : "hardware"},
                         {"iterations", options.iterations},
                         {"kernels", options.kernels},
                         {"mip_weight", options.mip_weight},

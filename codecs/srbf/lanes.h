@@ -1,22 +1,22 @@
-// Sixteen floats side by side (samples of a fit, kernels of a decoder), and four.
+// As many floats side by side as the CPU has (samples of a fit, kernels of a decoder).
 #pragma once
 
 #include <cmath>
 
+#include "codecs/wide_vector.h"
+
 namespace weft::srbf {
 
-using Vec16 = float __attribute__((vector_size(64)));
-using Vec4 = float __attribute__((vector_size(16)));
+#ifdef __AVX512F__
+using Wide = Vec16;
+#else
+using Wide = Vec8;
+#endif
+constexpr std::size_t wide_lanes = sizeof(Wide) / sizeof(float);
 
 template <typename Lanes>
-inline Lanes load(const float* p) {
-  Lanes v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-template <typename Lanes>
 inline void store(float* p, const Lanes& v) {
-  __builtin_memcpy(p, &v, sizeof v);
+  std::memcpy(p, &v, sizeof v);
 }
 
 template <typename Lanes>
@@ -27,11 +27,11 @@ inline Lanes square_root(const Lanes& v) {
   return root;
 }
 
-/// e^x for x <= 0, to 2e-7 of itself; below -87 what -87 has. A NaN stays one.
+/// e^x for x <= 0, to 3e-7 of itself; below -87 what -87 has. A NaN stays one.
 template <typename Lanes>
 inline Lanes exp_below_zero(Lanes x) {
   using Bits = decltype(x < x);  // whole numbers of 32 bits, as many
-  x = x < -87.0F ? x - x - 87.0F : x;
+  x = x < -87.0F ? Lanes{} - 87.0F : x;
   // Adding 1.5 * 2^23 rounds to the nearest whole number, which then is the low bits.
   const Lanes shifted = x * 1.44269504F + 12582912.0F;
   const Lanes whole = shifted - 12582912.0F;
@@ -39,22 +39,19 @@ inline Lanes exp_below_zero(Lanes x) {
   const Lanes p =
       1 + r * (1 + r * (0.5F + r * (1.0F / 6 + r * (1.0F / 24 + r * (1.0F / 120 + r / 720)))));
   Bits bits;
-  __builtin_memcpy(&bits, &shifted, sizeof bits);
+  std::memcpy(&bits, &shifted, sizeof bits);
   bits = (bits << 23) + (127 << 23);
   Lanes power;
-  __builtin_memcpy(&power, &bits, sizeof power);
+  std::memcpy(&power, &bits, sizeof power);
   return p * power;
 }
 
-/// Sums a fixed tree, in double from the fourth pair on.
-inline double sum_of(const Vec16& v) {
+/// The lanes' sum, in double and in a fixed order.
+inline double sum_in_double(const Wide& v) {
   double sum = 0;
-  for (int i = 0; i < 4; ++i)
-    sum += static_cast<double>((v[i] + v[i + 8]) + (v[i + 4] + v[i + 12]));
+  for (std::size_t i = 0; i < wide_lanes / 2; ++i)
+    sum += static_cast<double>(v[i]) + static_cast<double>(v[i + wide_lanes / 2]);
   return sum;
-}
-inline float sum_of(const Vec4& v) {
-  return (v[0] + v[2]) + (v[1] + v[3]);
 }
 
 }  // namespace weft::srbf

@@ -73,10 +73,10 @@ void MipLevels::abrdf(int level, std::size_t texel, std::span<float> values) con
   std::copy_n(&levels_[level][texel * values_], values_, values.begin());
 }
 
-std::vector<float> MipLevels::next_level(int level) const {
+LargeArray<float> MipLevels::next_level(int level) const {
   const int width = sizes_.width_of(level);
   const int fine_width = sizes_.width_of(level - 1);
-  std::vector<float> coarse(sizes_.texels(level) * values_);
+  LargeArray<float> coarse(sizes_.texels(level) * values_, btf_.memory());
   tbb::parallel_for(std::size_t{0}, sizes_.texels(level), [&](std::size_t texel) {
     std::vector<float> read(values_);
     float* sum = &coarse[texel * values_];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "btf/btf.h"
+#include "btf/large_array.h"
 
 namespace weft::srbf {
 
@@ -45,12 +46,12 @@ class MipLevels {
   void abrdf(int level, std::size_t texel, std::span<float> values) const;
 
  private:
-  std::vector<float> next_level(int level) const;
+  LargeArray<float> next_level(int level) const;
 
   const Btf& btf_;
   MipSizes sizes_;
-  std::size_t values_;                      // of a texel
-  std::vector<std::vector<float>> levels_;  // [level][texel][value]; level 0 empty
+  std::size_t values_;                     // of a texel
+  std::vector<LargeArray<float>> levels_;  // [level][texel][value]; level 0 empty
 };
 
 }  // namespace weft::srbf

@@ -11,7 +11,7 @@ namespace weft::srbf {
 
 namespace {
 
-constexpr std::size_t lanes = 16;
+constexpr std::size_t lanes = wide_lanes;
 constexpr std::size_t vectors = block_samples / lanes;  // of a block
 constexpr std::size_t tile = 4;                         // of the normal equations
 
@@ -28,34 +28,34 @@ struct Turns {
   }
 };
 
-// psi_k of sixteen samples and, where asked for, its derivative by the angle.
+// psi_k of some samples and, where asked for, its derivative by the angle.
 struct Variable {
-  Vec16 psi[3];         // NOLINT
-  Vec16 derivative[3];  // NOLINT
+  Wide psi[3];         // NOLINT
+  Wide derivative[3];  // NOLINT
 };
 
 Variable variable(const Samples& samples, std::size_t first, float a, float b, bool derived) {
-  Vec16 sum[3];  // NOLINT
-  Vec16 square{};
+  Wide sum[3];  // NOLINT
+  Wide square{};
   for (std::size_t c = 0; c < 3; ++c) {
-    sum[c] = load<Vec16>(&samples.light[c][first]) * a + load<Vec16>(&samples.view[c][first]) * b;
+    sum[c] = load<Wide>(&samples.light[c][first]) * a + load<Wide>(&samples.view[c][first]) * b;
     square += sum[c] * sum[c];
   }
-  const Vec16 inverse = 1 / square_root(square + smallest_square);
+  const Wide inverse = 1 / square_root(square + smallest_square);
   Variable v;
   for (std::size_t c = 0; c < 3; ++c) v.psi[c] = sum[c] * inverse;
   if (!derived) return v;
-  const Vec16 along = load<Vec16>(&samples.cosine[first]) * (a * a - b * b) * inverse * inverse;
+  const Wide along = load<Wide>(&samples.cosine[first]) * (a * a - b * b) * inverse * inverse;
   for (std::size_t c = 0; c < 3; ++c) {
-    const Vec16 turned =
-        load<Vec16>(&samples.view[c][first]) * a - load<Vec16>(&samples.light[c][first]) * b;
+    const Wide turned =
+        load<Wide>(&samples.view[c][first]) * a - load<Wide>(&samples.light[c][first]) * b;
     v.derivative[c] = (turned - sum[c] * along) * inverse;
   }
   return v;
 }
 
-void add_to(float* sum, const Vec16& v) {
-  store(sum, load<Vec16>(sum) + v);
+void add_lanes(float* sum, const Wide& v) {
+  store(sum, load<Wide>(sum) + v);
 }
 
 double count_numbers(const Samples& samples) {
@@ -106,10 +106,10 @@ void Objective::fill_gaussians(const Kernels& kernels, std::size_t block) {
     const auto length = static_cast<float>(lengths);
     float* row = gaussians(block) + j * block_samples;
     for (std::size_t i = 0; i < vectors; ++i) {
-      Vec16 exponent = Vec16{} - length;
+      Wide exponent = Wide{} - length;
       for (std::size_t m = 0; m < 3 * K; ++m)
-        exponent += load<Vec16>(&psi[m * block_samples + i * lanes]) * p[m];
-      const Vec16 gain = load<Vec16>(&samples_.gain[block * block_samples + i * lanes]);
+        exponent += load<Wide>(&psi[m * block_samples + i * lanes]) * p[m];
+      const Wide gain = load<Wide>(&samples_.gain[block * block_samples + i * lanes]);
       store(row + i * lanes, exp_below_zero(exponent) * gain);
     }
   }
@@ -120,32 +120,32 @@ void Objective::add_normal_equations(std::size_t block) {
   const float* g = gaussians(block);
   for (std::size_t row = 0; row < padded_ / tile; ++row) {
     for (std::size_t column = 0; column <= row; ++column) {
-      std::array<std::array<Vec16, tile>, tile> sum{};
+      std::array<std::array<Wide, tile>, tile> sum{};
       for (std::size_t i = 0; i < vectors; ++i) {
-        std::array<Vec16, tile> left;
+        std::array<Wide, tile> left;
         for (std::size_t a = 0; a < tile; ++a)
-          left[a] = load<Vec16>(g + (row * tile + a) * block_samples + i * lanes);
+          left[a] = load<Wide>(g + (row * tile + a) * block_samples + i * lanes);
         for (std::size_t b = 0; b < tile; ++b) {
-          const Vec16 right = load<Vec16>(g + (column * tile + b) * block_samples + i * lanes);
+          const Wide right = load<Wide>(g + (column * tile + b) * block_samples + i * lanes);
           for (std::size_t a = 0; a < tile; ++a) sum[a][b] += left[a] * right;
         }
       }
       float* total = &normal_[tile_index(row, column)];
       for (std::size_t a = 0; a < tile; ++a) {
-        for (std::size_t b = 0; b < tile; ++b) add_to(total + (a * tile + b) * lanes, sum[a][b]);
+        for (std::size_t b = 0; b < tile; ++b) add_lanes(total + (a * tile + b) * lanes, sum[a][b]);
       }
     }
   }
   for (std::size_t j = 0; j < shape_.kernels; ++j) {
-    std::array<Vec16, 3> sum{};
+    std::array<Wide, 3> sum{};
     for (std::size_t i = 0; i < vectors; ++i) {
-      const Vec16 gaussian = load<Vec16>(g + j * block_samples + i * lanes);
+      const Wide gaussian = load<Wide>(g + j * block_samples + i * lanes);
       for (std::size_t c = 0; c < 3; ++c) {
         sum[c] += gaussian *
-                  load<Vec16>(&channels_[c * samples_.count + block * block_samples + i * lanes]);
+                  load<Wide>(&channels_[c * samples_.count + block * block_samples + i * lanes]);
       }
     }
-    for (std::size_t c = 0; c < 3; ++c) add_to(&right_[(3 * j + c) * lanes], sum[c]);
+    for (std::size_t c = 0; c < 3; ++c) add_lanes(&right_[(3 * j + c) * lanes], sum[c]);
   }
 }
 
@@ -158,11 +158,11 @@ void Objective::solve_colours(Kernels& kernels) const {
     for (std::size_t j = 0; j <= i; ++j) {
       const float* sum =
           &normal_[tile_index(i / tile, j / tile) + (i % tile * tile + j % tile) * lanes];
-      matrix(i, j) = matrix(j, i) = sum_of(load<Vec16>(sum)) / numbers_;
+      matrix(i, j) = matrix(j, i) = sum_in_double(load<Wide>(sum)) / numbers_;
     }
     matrix(i, i) += ridge_.share * matrix(i, i) + ridge_.colour + weight;
     for (std::size_t c = 0; c < 3; ++c) {
-      right(i, c) = sum_of(load<Vec16>(&right_[(3 * i + c) * lanes])) / numbers_;
+      right(i, c) = sum_in_double(load<Wide>(&right_[(3 * i + c) * lanes])) / numbers_;
       if (weight > 0) right(i, c) += weight * pull_.target[shape_.unknowns() + 3 * i + c];
     }
   }
@@ -177,7 +177,7 @@ std::vector<double> Objective::gaussian_squares() const {
   for (std::size_t j = 0; j < squares.size(); ++j) {
     const float* sum =
         &normal_[tile_index(j / tile, j / tile) + (j % tile * tile + j % tile) * lanes];
-    squares[j] = sum_of(load<Vec16>(sum)) / numbers_;
+    squares[j] = sum_in_double(load<Wide>(sum)) / numbers_;
   }
   return squares;
 }
@@ -198,23 +198,23 @@ double Objective::add_errors(const Kernels& kernels, std::size_t block, bool wit
   for (std::size_t m = 0; m < 3 * K * n; ++m) centre[m] = static_cast<float>(kernels.values()[m]);
   const Turns<K> turns(kernels.angles());
   const float* g = gaussians(block);
-  Vec16 squares{};
-  std::array<Vec16, K> angle_sum{};
+  Wide squares{};
+  std::array<Wide, K> angle_sum{};
   for (std::size_t i = 0; i < vectors; ++i) {
     const std::size_t first = block * block_samples + i * lanes;
-    std::array<Vec16, 3> error;
+    std::array<Wide, 3> error;
     for (std::size_t c = 0; c < 3; ++c)
-      error[c] = Vec16{} - load<Vec16>(&channels_[c * samples_.count + first]);
+      error[c] = Wide{} - load<Wide>(&channels_[c * samples_.count + first]);
     for (std::size_t j = 0; j < n; ++j) {
-      const Vec16 gaussian = load<Vec16>(g + j * block_samples + i * lanes);
+      const Wide gaussian = load<Wide>(g + j * block_samples + i * lanes);
       for (std::size_t c = 0; c < 3; ++c) error[c] += gaussian * colour[3 * j + c];
     }
     for (std::size_t c = 0; c < 3; ++c) squares += error[c] * error[c];
     if (!with_gradient) continue;
-    std::array<Vec16, 3 * K> pulled{};  // sum over j of share_j p_j
+    std::array<Wide, 3 * K> pulled{};  // sum over j of share_j p_j
     for (std::size_t j = 0; j < n; ++j) {
-      const Vec16 gaussian = load<Vec16>(g + j * block_samples + i * lanes);
-      Vec16 share = gaussian * ridge[j];
+      const Wide gaussian = load<Wide>(g + j * block_samples + i * lanes);
+      Wide share = gaussian * ridge[j];
       for (std::size_t c = 0; c < 3; ++c) share += error[c] * colour[3 * j + c];
       share *= gaussian;
       store(&shares_[j * block_samples + i * lanes], share);
@@ -229,20 +229,20 @@ double Objective::add_errors(const Kernels& kernels, std::size_t block, bool wit
       }
     }
   }
-  if (!with_gradient) return sum_of(squares);
-  for (std::size_t k = 0; k < K; ++k) add_to(&angle_sum_[k * lanes], angle_sum[k]);
+  if (!with_gradient) return sum_in_double(squares);
+  for (std::size_t k = 0; k < K; ++k) add_lanes(&angle_sum_[k * lanes], angle_sum[k]);
   for (std::size_t j = 0; j < n; ++j) {
-    std::array<Vec16, 3 * K + 1> sum{};
+    std::array<Wide, 3 * K + 1> sum{};
     for (std::size_t i = 0; i < vectors; ++i) {
-      const Vec16 share = load<Vec16>(&shares_[j * block_samples + i * lanes]);
+      const Wide share = load<Wide>(&shares_[j * block_samples + i * lanes]);
       for (std::size_t m = 0; m < 3 * K; ++m)
-        sum[m] += share * load<Vec16>(&psi[m * block_samples + i * lanes]);
+        sum[m] += share * load<Wide>(&psi[m * block_samples + i * lanes]);
       sum[3 * K] += share;
     }
     for (std::size_t m = 0; m <= 3 * K; ++m)
-      add_to(&centre_sum_[(j * (3 * K + 1) + m) * lanes], sum[m]);
+      add_lanes(&centre_sum_[(j * (3 * K + 1) + m) * lanes], sum[m]);
   }
-  return sum_of(squares);
+  return sum_in_double(squares);
 }
 
 template <std::size_t K>
@@ -251,19 +251,19 @@ void Objective::write_gradient(const Kernels& kernels, std::span<double> gradien
   const double factor = 2 / numbers_;
   for (std::size_t j = 0; j < shape_.kernels; ++j) {
     const float* sum = &centre_sum_[j * (3 * K + 1) * lanes];
-    const double shares = sum_of(load<Vec16>(sum + 3 * K * lanes));
+    const double shares = sum_in_double(load<Wide>(sum + 3 * K * lanes));
     for (std::size_t k = 0; k < K; ++k) {
       const double* p = kernels.centre(j, k);
       const double inward = shares / smooth_length(p[0], p[1], p[2]);
       for (std::size_t c = 0; c < 3; ++c) {
         gradient[3 * (j * K + k) + c] =
-            factor * (sum_of(load<Vec16>(sum + (3 * k + c) * lanes)) - p[c] * inward);
+            factor * (sum_in_double(load<Wide>(sum + (3 * k + c) * lanes)) - p[c] * inward);
       }
     }
   }
   for (std::size_t k = 0; k < K; ++k) {
     gradient[shape_.centres() + k] =
-        free_angles ? factor * sum_of(load<Vec16>(&angle_sum_[k * lanes])) : 0;
+        free_angles ? factor * sum_in_double(load<Wide>(&angle_sum_[k * lanes])) : 0;
   }
 }
 

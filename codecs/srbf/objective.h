@@ -80,7 +80,7 @@ class Objective {
   std::span<const float> channels_;
   Pull pull_;
 
-  // Sums are kept sixteen lanes apart until the end.
+  // Sums are kept lane by lane until the end.
   std::vector<float> gaussians_;   // [block][kernel][sample], times the gain
   std::vector<float> shares_;      // [kernel][sample] of a block: d error / d exponent
   std::vector<float> normal_;      // [tile row][tile column][4][4][lane]

@@ -1,5 +1,4 @@
-// The pairs that a fit sees, as its loops want them: arrays side by side, a multiple of sixteen
-// pairs.
+// The pairs that a fit sees, as its loops want them: arrays side by side, whole blocks.
 #pragma once
 
 #include <span>

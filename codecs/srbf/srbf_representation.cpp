@@ -10,8 +10,7 @@ namespace weft::srbf {
 
 namespace {
 
-constexpr std::size_t sixteen = 16;
-constexpr std::size_t longest_row = 64 * (3 * most_modes + 3) + sixteen;
+constexpr std::size_t longest_row = 64 * (3 * most_modes + 3) + wide_lanes;
 
 // cos and sin of four angles, to 1e-7.
 struct Turn {
@@ -61,21 +60,20 @@ struct SrbfRepresentation::Rows {
 
 SrbfRepresentation::SrbfRepresentation(Model model) : model_(std::move(model)) {
   const Layout layout = model_.layout();
-  sixteens_ = layout.groups() / 4;
+  wides_ = 4 * layout.groups() / wide_lanes;
   angles_at_ = model_.row() - 4;
-  row_ = (model_.row() + sixteen - 1) / sixteen * sixteen;
+  row_ = (model_.row() + wide_lanes - 1) / wide_lanes * wide_lanes;
   for (int level = 0; level < model_.sizes().levels(); ++level)
     first_texel_.push_back(model_.sizes().first_texel(level));
   std::vector<std::size_t> place(model_.row());
   for (std::size_t i = 0; i < place.size(); ++i) {
     const std::size_t quad = i / 4;
     const std::size_t group = quad / layout.slots();
-    if (group >= 4 * sixteens_) {
-      place[i] = i;
-    } else {
-      place[i] =
-          sixteen * (group / 4 * layout.slots() + quad % layout.slots()) + group % 4 * 4 + i % 4;
-    }
+    constexpr std::size_t quads = wide_lanes / 4;  // side by side
+    place[i] = group < quads * wides_
+                   ? wide_lanes * (group / quads * layout.slots() + quad % layout.slots()) +
+                         group % quads * 4 + i % 4
+                   : i;
   }
   rows_.resize(model_.texels() * row_);
   for (std::size_t texel = 0; texel < model_.texels(); ++texel) {
@@ -107,10 +105,10 @@ template <std::size_t K>
 Rgb SrbfRepresentation::decode(const Rows& rows, const Direction& light,
                                const Direction& view) const {
   alignas(64) std::array<float, longest_row> numbers;
-  for (std::size_t i = 0; i < row_; i += sixteen) {
-    Vec16 sum = load<Vec16>(rows.row[0] + i) * rows.weight[0];
+  for (std::size_t i = 0; i < row_; i += wide_lanes) {
+    Wide sum = load<Wide>(rows.row[0] + i) * rows.weight[0];
     for (std::size_t t = 1; t < rows.count; ++t)
-      sum += load<Vec16>(rows.row[t] + i) * rows.weight[t];
+      sum += load<Wide>(rows.row[t] + i) * rows.weight[t];
     store(&numbers[i], sum);
   }
   const Turn turned = turn(load<Vec4>(&numbers[angles_at_]));
@@ -121,16 +119,16 @@ Rgb SrbfRepresentation::decode(const Rows& rows, const Direction& light,
     for (int c = 0; c < 3; ++c) psi[3 * k + c] = sum[c] * inverse;
   }
   constexpr std::size_t slots = 3 * K + 3;
-  std::array<Vec16, 3> wide{};
+  std::array<Wide, 3> wide{};
   const float* slot = numbers.data();
-  for (std::size_t i = 0; i < sixteens_; ++i, slot += sixteen * slots)
+  for (std::size_t i = 0; i < wides_; ++i, slot += wide_lanes * slots)
     add_kernels<K>(slot, psi, wide);
   std::array<Vec4, 3> narrow{};
   for (; slot < &numbers[angles_at_]; slot += 4 * slots) add_kernels<K>(slot, psi, narrow);
   Rgb result;
   const float gain = model_.quantity == Quantity::over_cosine ? light.z : 1;
   for (std::size_t c = 0; c < 3; ++c) {
-    const float value = (static_cast<float>(sum_of(wide[c])) + sum_of(narrow[c])) * gain;
+    const float value = (sum_of(wide[c]) + sum_of(narrow[c])) * gain;
     result[static_cast<int>(c)] = value < 0 ? 0 : value;  // a NaN stays one
   }
   return result;

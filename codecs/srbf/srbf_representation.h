@@ -6,6 +6,7 @@
 
 #include "codecs/representation.h"
 #include "codecs/srbf/model.h"
+#include "codecs/stencil_batch.h"
 
 namespace weft::srbf {
 
@@ -32,6 +33,7 @@ class SrbfRepresentation : public Representation {
   const Model& model() const { return model_; }
 
  private:
+  std::vector<std::byte> filtered_bytes() const;
   struct Rows;
   Rows rows_around(Texcoord uv, float lod) const;
   void prefetch(const Rows& rows) const;
@@ -41,11 +43,11 @@ class SrbfRepresentation : public Representation {
   void decode_all(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
 
   Model model_;
-  std::size_t sixteens_;   // groups of sixteen kernels; the rest are quads
+  std::size_t wides_;      // groups of as many kernels as the CPU has lanes; the rest are quads
   std::size_t angles_at_;  // in a row
-  std::size_t row_;        // numbers of a texel, a multiple of sixteen
+  std::size_t row_;        // numbers of a texel, a multiple of the lanes
   std::vector<float>
-      rows_;  // [level][texel][row_], times scale: [sixteen][slot][16], [quad][slot][4], angles
+      rows_;  // [level][texel][row_], times scale: [wide][slot][lane], [quad][slot][4], angles
   std::vector<std::size_t> first_texel_;  // of each level
 };
 
