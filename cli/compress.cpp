@@ -90,10 +90,12 @@ fs::path scratch_folder(const Options& options) {
   return fs::absolute(output_folder(options.output)).parent_path();
 }
 
-std::shared_ptr<const Btf> read_input(const Options& options, const Session& session) {
+std::shared_ptr<const Btf> read_input(const Options& options, const Codec& codec,
+                                      const Session& session) {
   std::shared_ptr<MemoryBudget> memory;
   if (options.memory > 0) {
-    memory = fit_budget(options.memory, read_btf_header(options.input), scratch_folder(options));
+    memory =
+        fit_budget(options.memory, read_btf_header(options.input), codec, scratch_folder(options));
   }
   const auto btf = std::make_shared<const Btf>(read_btf(options.input, memory));
   if (btf->mapped() && lies_in_memory(memory->scratch_folder())) {
@@ -113,7 +115,7 @@ void compress(const Options& options, Session& session, bool seed_given) {
   if (seed_given && takes_seed(codec))
     overrides.insert(overrides.begin(), fmt::format("seed={}", session.seed));
   const Settings parameters = Settings::from_text("", "--set", overrides);
-  const auto btf = read_input(options, session);
+  const auto btf = read_input(options, codec, session);
 
   Progress progress("compress " + options.codec, session.quiet);
   progress.keep_in(checkpoint_folder(options.output));

@@ -49,6 +49,9 @@ struct Codec {
       fit;
   /// Opens a folder that `save` wrote. @throws Error
   std::function<std::unique_ptr<Representation>(const std::filesystem::path&)> load;
+  /// What a fit with default parameters works with for each texel, beside the data and what lies in
+  /// their `MemoryBudget`, with half as much again to spare.
+  std::size_t fit_bytes_a_texel = 1024;
 };
 
 /// Every codec, `raw` first. The table is in registry.cpp, a line a codec.

@@ -54,6 +54,7 @@ Json level_report(int level, const LevelResult& result, double scale, double squ
 // A level as doubles: of each texel its numbers, then what the level tells of itself.
 std::vector<double> packed(const LevelResult& result) {
   std::vector<double> values;
+  values.reserve(result.kernels.size() * result.kernels.front().values().size() + 3);
   for (const Kernels& kernels : result.kernels)
     values.insert(values.end(), kernels.values().begin(), kernels.values().end());
   values.insert(values.end(), {result.squared_error, static_cast<double>(result.fallbacks),

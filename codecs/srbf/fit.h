@@ -16,7 +16,7 @@ struct FitOptions {
   Modes modes;
   Quantity quantity = Quantity::radiance;
   Storage storage = Storage::half;
-  Filtering filtering = Filtering::exact;
+  Filtering filtering = Filtering::values;
   int iterations = 100;      ///< of L-BFGS, a descent below the top
   int starts = 4;            ///< descents at the top, each from another guess
   int sweeps = 1;            ///< over a level, after the one that starts from its parents

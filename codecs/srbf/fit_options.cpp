@@ -19,9 +19,9 @@ FitOptions fit_options(const Settings& parameters) {
   options.quantity =
       parameters.choice("quantity", {"B", "f"}) == "f" ? Quantity::over_cosine : Quantity::radiance;
   options.storage = storage_parameter(parameters);
-  options.filtering = parameters.choice("filtering", {"exact", "hardware"}) == "hardware"
-                          ? Filtering::hardware
-                          : Filtering::exact;
+  options.filtering = parameters.choice("filtering", {"values", "numbers"}) == "numbers"
+                          ? Filtering::numbers
+                          : Filtering::values;
   options.iterations = count("iterations", options.iterations, 1, 10000);
   options.starts = count("starts", options.starts, 1, 100);
   options.sweeps = count("sweeps", options.sweeps, 0, 100);
@@ -35,7 +35,9 @@ FitOptions fit_options(const Settings& parameters) {
 
 std::string parameter_help() {
   return "bits = half               half | 8 | float: what the textures hold\n"
-         "filtering = exact         on the GPU; hardware: by its own filter, faster and coarser\n"
+         "filtering = values        between texels and levels, of B; numbers: of what is fitted, "
+         "by "
+         "the GPU's filter (wants smooth_weight)\n"
          "iterations = 100          of L-BFGS, each time that a texel is fitted\n"
          "kernels = 20              J, 1 to 64\n"
          "mip_weight = 0            c_mip: pull towards the parent's numbers\n"
@@ -53,7 +55,7 @@ std::string parameter_help() {
 
 std::string to_json(const FitOptions& options) {
   return nlohmann::json{{"bits", name_of(options.storage)},
-                        {"filtering", options.filtering == Filtering::exact ? "exact" : "hardware"},
+                        {"filtering", name_of(options.filtering)},
                         {"iterations", options.iterations},
                         {"kernels", options.kernels},
                         {"mip_weight", options.mip_weight},

@@ -132,7 +132,7 @@ class LevelFit {
     Workspace& workspace = workspace_at(texel);
     workspace.fitter.set_pull(pulls.pull());
     TexelFit best = best_of(texel, workspace.fitter, starts, nullptr);
-    if (hints_.empty()) return best;
+    if (hints_.empty() || best.value.total <= DescentLimits{}.enough) return best;
     TexelFit other = workspace.fitter.descend(workspace.fitter.as_it_is(hints_[texel]),
                                               {.iterations = options_.iterations});
     if (!(other.value.total < best.value.total)) return best;
@@ -181,7 +181,7 @@ class LevelFit {
     for (std::size_t i = first_other;
          i < std::min<std::size_t>(begun.size(), first_other + most_restarts); ++i) {
       const double bound = now != nullptr ? promising * best.value.total : begun[0].value.total;
-      if (!(begun[i].value.total < bound)) break;
+      if (!(begun[i].value.total < bound) || best.value.total <= limits.enough) break;
       TexelFit other = fitter.descend(begun[i], limits);
       if (!(other.value.total < best.value.total)) continue;
       best = std::move(other);
@@ -207,10 +207,10 @@ class LevelFit {
     return texels;
   }
 
-  LevelResult result() const {
+  LevelResult result() {
     LevelResult result;
     for (std::size_t i = 0; i < fits_.size(); ++i) {
-      result.kernels.push_back(fits_[i].kernels);
+      result.kernels.push_back(std::move(fits_[i].kernels));
       result.squared_error += fits_[i].value.data / static_cast<double>(fits_.size());
       result.restarts += restarted_[i];
       result.fallbacks += fell_back_[i];

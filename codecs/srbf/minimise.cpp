@@ -18,6 +18,7 @@ using Value = std::function<double(std::span<const double>, std::span<double>)>;
 struct Search {
   const Value& value;
   std::size_t count;
+  double enough;
   std::vector<double> best;
   double least = std::numeric_limits<double>::infinity();
 
@@ -37,6 +38,12 @@ double ask(void* search, const double* x, double* gradient, int n, double /*step
   return (*static_cast<Search*>(search))(x, gradient, n);
 }
 
+// Anything but 0 ends the search.
+int is_enough(void* search, const double*, const double*, double value, double, double, double,
+              int /*n*/, int /*iteration*/, int /*evaluations*/) {
+  return value <= static_cast<Search*>(search)->enough ? 1 : 0;
+}
+
 }  // namespace
 
 bool minimise(std::span<double> x, const Value& value, const DescentLimits& limits) {
@@ -45,7 +52,8 @@ bool minimise(std::span<double> x, const Value& value, const DescentLimits& limi
   if (!vector) throw std::bad_alloc();
   std::copy(x.begin(), x.end(), vector.get());
   std::fill(vector.get() + x.size(), vector.get() + padded, 0.0);
-  Search search{.value = value, .count = x.size(), .best = {x.begin(), x.end()}};
+  Search search{
+      .value = value, .count = x.size(), .enough = limits.enough, .best = {x.begin(), x.end()}};
   lbfgs_parameter_t parameters;
   lbfgs_parameter_init(&parameters);
   parameters.m = limits.memory;
@@ -54,7 +62,7 @@ bool minimise(std::span<double> x, const Value& value, const DescentLimits& limi
   parameters.delta = limits.decrease;
   parameters.epsilon = 1e-9;
   double end = 0;
-  lbfgs(padded, vector.get(), &end, ask, nullptr, &search, &parameters);
+  lbfgs(padded, vector.get(), &end, ask, is_enough, &search, &parameters);
   std::ranges::copy(search.best, x.begin());
   return std::isfinite(search.least) &&
          std::ranges::all_of(search.best, [](double v) { return std::isfinite(v); });

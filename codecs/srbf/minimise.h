@@ -11,6 +11,7 @@ struct DescentLimits {
   int iterations = 100;
   int memory = 20;         ///< pairs of steps and gradients that are kept
   double decrease = 1e-3;  ///< ends where ten iterations lower the value by less, relatively
+  double enough = 1e-8;    ///< ends at this value: of data of mean square 1, what halfs can show
 };
 
 /// Lowers `value`, which answers f(x) and writes its gradient, from `x` on, which it replaces by

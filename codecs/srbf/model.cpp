@@ -27,6 +27,10 @@ void lay_out(const Layout& layout, const Kernels& kernels, double colour_scale, 
 
 }  // namespace
 
+std::string name_of(Filtering filtering) {
+  return filtering == Filtering::numbers ? "numbers" : "values";
+}
+
 void Model::set_kernels(const std::vector<Kernels>& kernels, double colour_scale) {
   values.assign(kernels.size() * row(), 0);
   scale.assign(row(), 0);

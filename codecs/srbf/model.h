@@ -28,16 +28,17 @@ struct Layout {
   std::size_t angle_place(std::size_t k) const { return 4 * groups() * slots() + k; }
 };
 
-/// Who blends the numbers of texels and levels on the GPU: the program, as the CPU does, or the
-/// GPU's own filter, which is faster and knows only a few blends between two texels.
-enum class Filtering { exact, hardware };
+/// What is blended between texels and levels: the kernels' sums, or their numbers, as a GPU's
+/// filter does and the paper, which is faster and right where neighbours' numbers are alike.
+enum class Filtering { values, numbers };
+std::string name_of(Filtering filtering);
 
 struct Model {
   FittedHead head;
   Storage storage = Storage::half;
   Shape shape{};
   Quantity quantity = Quantity::radiance;
-  Filtering filtering = Filtering::exact;
+  Filtering filtering = Filtering::values;
   std::vector<float> values{};  ///< [level][texel][quad][4], stored, over `scale`
   std::vector<float> scale{};   ///< [quad][4], the largest of all texels; colours in 1/sr
   std::string report = "{}";    ///< JSON: errors of each level, what fell back

@@ -42,7 +42,7 @@ Model model_from(const fs::path& folder, const Json& json, FittedHead head) {
   }
   model.shape = {number(json, "kernels", most_kernels), number(json, "modes", most_modes)};
   model.quantity = json.at("quantity") == "B" ? Quantity::radiance : Quantity::over_cosine;
-  model.filtering = json.at("filtering") == "hardware" ? Filtering::hardware : Filtering::exact;
+  model.filtering = json.at("filtering") == "numbers" ? Filtering::numbers : Filtering::values;
   model.report = json.at("report").dump();
   model.scale = json.at("scale").get<std::vector<float>>();
   check_scales(model);
@@ -65,7 +65,7 @@ void write_model(const fs::path& folder, const Model& model) {
                 {"kernels", model.shape.kernels},
                 {"modes", model.shape.modes},
                 {"quantity", model.quantity == Quantity::radiance ? "B" : "B / cos(theta_light)"},
-                {"filtering", model.filtering == Filtering::hardware ? "hardware" : "exact"},
+                {"filtering", name_of(model.filtering)},
                 {"levels", model.sizes().levels()},
                 {"scale", model.scale},
                 {"report", Json::parse(model.report)},

@@ -17,7 +17,8 @@ Codec srbf_codec() {
           },
           .load = [](const std::filesystem::path& folder) -> std::unique_ptr<Representation> {
             return std::make_unique<srbf::SrbfRepresentation>(srbf::read_model(folder));
-          }};
+          },
+          .fit_bytes_a_texel = 10240};  // three or four times the 243 doubles of its kernels
 }
 
 }  // namespace weft

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <string_view>
+#include <string>
 
 #include "codecs/srbf/srbf_representation.h"
 #include "codecs/stencil_glsl.h"
@@ -12,60 +12,10 @@ namespace weft::srbf {
 
 namespace {
 
-// One quad of four kernels' numbers, blended here.
-constexpr const char* exact_glsl = R"(
-int btf_row[8];
-float btf_weight[8];
-int btf_rows;
-
-void btf_add_level(vec2 uv, int level, float share) {
-  ivec2 size = max(btf_size >> level, ivec2(1));
-  int first = 0;
-  for (int l = 0; l < level; ++l) {
-    ivec2 finer = max(btf_size >> l, ivec2(1));
-    first += finer.x * finer.y;
-  }
-  btf_TexelStencil texels = btf_bilinear_texels(uv, size);
-  for (int t = 0; t < 4; ++t) {
-    btf_row[btf_rows] = (first + texels.texel[t].y * size.x + texels.texel[t].x) * btf_quads;
-    btf_weight[btf_rows++] = texels.weight[t] * share;
-  }
-}
-
-void btf_place(vec2 uv, float lambda) {
-  int level = int(lambda);
-  float blend = lambda - float(level);
-  btf_rows = 0;
-  btf_add_level(uv, level, 1.0 - blend);
-  if (blend > 0.0) btf_add_level(uv, level + 1, blend);
-}
-
-vec4 btf_blended(int quad) {
-  vec4 sum = vec4(0.0);
-  for (int i = 0; i < btf_rows; ++i) sum += btf_kernel_quad(btf_row[i] + quad) * btf_weight[i];
-  return sum * texelFetch(btf_scale, quad);
-}
-)";
-
-// The same by the GPU's filter: a layer a quad.
-constexpr const char* hardware_glsl = R"(
-vec2 btf_at;
-float btf_lod;
-
-void btf_place(vec2 uv, float lambda) {
-  btf_at = vec2(uv.x, 1.0 - uv.y);
-  btf_lod = lambda;
-}
-
-vec4 btf_blended(int quad) { return btf_kernel_quad(quad) * texelFetch(btf_scale, quad); }
-)";
-
-constexpr const char* evaluate_glsl = R"(
-vec3 btf_evaluate(vec2 uv, vec3 light, vec3 view, float lod) {
-  if (!(light.z > 0.0) || !(view.z > 0.0)) return vec3(0.0);
-  float lambda = lod > 0.0 ? min(lod, float(btf_levels - 1)) : 0.0;
-  btf_place(uv, lambda);
-  vec4 angle = btf_blended(btf_quads - 1);
+// The kernels' sum of the numbers that `btf_quad` gives, four kernels' at a time.
+constexpr const char* value_glsl = R"(
+vec3 btf_value(vec3 light, vec3 view) {
+  vec4 angle = btf_quad(btf_quads - 1);
   vec3 psi[btf_modes];
   for (int k = 0; k < btf_modes; ++k) {
     vec3 sum = light * cos(angle[k]) + view * sin(angle[k]);
@@ -76,20 +26,81 @@ vec3 btf_evaluate(vec2 uv, vec3 light, vec3 view, float lod) {
   while (quad < btf_quads - 1) {
     vec4 exponent = vec4(0.0);
     for (int k = 0; k < btf_modes; ++k) {
-      vec4 x = btf_blended(quad++);
-      vec4 y = btf_blended(quad++);
-      vec4 z = btf_blended(quad++);
+      vec4 x = btf_quad(quad++);
+      vec4 y = btf_quad(quad++);
+      vec4 z = btf_quad(quad++);
       exponent += x * psi[k].x + y * psi[k].y + z * psi[k].z -
                   sqrt(x * x + y * y + z * z + btf_rounding_square);
     }
     vec4 kernel = exp(max(exponent, vec4(-87.0)));
-    value.r += dot(kernel, btf_blended(quad++));
-    value.g += dot(kernel, btf_blended(quad++));
-    value.b += dot(kernel, btf_blended(quad++));
+    value.r += dot(kernel, btf_quad(quad++));
+    value.g += dot(kernel, btf_quad(quad++));
+    value.b += dot(kernel, btf_quad(quad++));
   }
-  return max(value * btf_gain, vec3(0.0));
+  return value * btf_gain;
 }
 )";
+
+// Sums are blended: texel by texel, level by level.
+constexpr const char* values_glsl = R"(
+vec3 btf_level_value(vec2 uv, vec3 light, vec3 view, int level) {
+  ivec2 size = max(btf_size >> level, ivec2(1));
+  int first = 0;
+  for (int l = 0; l < level; ++l) {
+    ivec2 finer = max(btf_size >> l, ivec2(1));
+    first += finer.x * finer.y;
+  }
+  btf_TexelStencil texels = btf_bilinear_texels(uv, size);
+  vec3 sum = vec3(0.0);
+  for (int t = 0; t < 4; ++t) {
+    btf_row = (first + texels.texel[t].y * size.x + texels.texel[t].x) * btf_quads;
+    sum += texels.weight[t] * btf_value(light, view);
+  }
+  return sum;
+}
+
+vec3 btf_filtered(vec2 uv, vec3 light, vec3 view, float lambda) {
+  int level = int(lambda);
+  float blend = lambda - float(level);
+  vec3 fine = btf_level_value(uv, light, view, level);
+  if (blend == 0.0) return fine;
+  return mix(fine, btf_level_value(uv, light, view, level + 1), blend);
+}
+)";
+
+// Numbers are blended, by the GPU's filter.
+constexpr const char* numbers_glsl = R"(
+vec3 btf_filtered(vec2 uv, vec3 light, vec3 view, float lambda) {
+  btf_at = vec2(uv.x, 1.0 - uv.y);
+  btf_lod = lambda;
+  return btf_value(light, view);
+}
+)";
+
+constexpr const char* evaluate_glsl = R"(
+vec3 btf_evaluate(vec2 uv, vec3 light, vec3 view, float lod) {
+  if (!(light.z > 0.0) || !(view.z > 0.0)) return vec3(0.0);
+  float lambda = lod > 0.0 ? min(lod, float(btf_levels - 1)) : 0.0;
+  return max(btf_filtered(uv, light, view, lambda), vec3(0.0));
+}
+)";
+
+// Four kernels' numbers as the GPU's filter finds them: a layer a quad.
+std::string filtered_quad(Storage storage) {
+  return fmt::format(
+      "vec2 btf_at;\nfloat btf_lod;\n"
+      "vec4 btf_quad(int i) {{ return (textureLod(btf_kernels, vec3(btf_at, i), "
+      "btf_lod){} * texelFetch(btf_scale, i); }}\n",
+      storage == Storage::eight_bit ? " * 255.0 - 128.0) / 127.0" : ")");
+}
+
+// Those of the texel that begins at btf_row.
+std::string fetched_quad(Storage storage) {
+  return fmt::format(
+      "int btf_row;\nvec4 btf_quad(int i) {{ return {} * texelFetch(btf_scale, i); "
+      "}}\n",
+      stored_fetch("btf_kernels", "btf_row + i", storage));
+}
 
 }  // namespace
 
@@ -115,9 +126,9 @@ std::vector<std::byte> SrbfRepresentation::filtered_bytes() const {
 
 GlProgram SrbfRepresentation::gl_program() const {
   GlProgram program;
-  const bool hardware = model_.filtering == Filtering::hardware;
+  const bool by_gpu = model_.filtering == Filtering::numbers;
   GlTexture kernels = stored_texture("btf_kernels", model_.storage, model_.values);
-  if (hardware) {
+  if (by_gpu) {
     kernels = {.name = kernels.name,
                .kind = GlTexture::Kind::array_2d,
                .format = kernels.format,
@@ -138,20 +149,9 @@ GlProgram SrbfRepresentation::gl_program() const {
       model_.head.width, model_.head.height, model_.sizes().levels(), model_.layout().quads(),
       model_.shape.modes, smallest_square, rounding_square,
       model_.quantity == Quantity::over_cosine ? "light.z" : "1.0");
-  if (hardware) {
-    const std::string byte =
-        model_.storage == Storage::eight_bit ? " * 255.0 - 128.0) / 127.0" : ")";
-    program.glsl += std::string(hardware_glsl)
-                        .insert(std::string_view(hardware_glsl).find("vec4 btf_blended"),
-                                fmt::format("vec4 btf_kernel_quad(int i) {{ return "
-                                            "(textureLod(btf_kernels, vec3(btf_at, i), "
-                                            "btf_lod){}; }}\n",
-                                            byte));
-  } else {
-    program.glsl += fmt::format("vec4 btf_kernel_quad(int i) {{ return {}; }}\n",
-                                stored_fetch("btf_kernels", "i", model_.storage));
-    program.glsl += exact_glsl;
-  }
+  program.glsl += by_gpu ? filtered_quad(model_.storage) : fetched_quad(model_.storage);
+  program.glsl += value_glsl;
+  program.glsl += by_gpu ? numbers_glsl : values_glsl;
   program.glsl += evaluate_glsl;
   return program;
 }

@@ -15,8 +15,9 @@ class SrbfRepresentation : public Representation {
   explicit SrbfRepresentation(Model model);
 
   using Appearance::evaluate;
-  /// Blends the numbers of four texels, of two levels where lod lies between, as a GPU filters
-  /// them, and evaluates them once; values below 0 become 0. There is no table of directions.
+  /// Blends what four texels' kernels sum up to, of two levels where lod lies between, or, as the
+  /// model's filtering says, their numbers, and sums up once; sums below 0 become 0. There is no
+  /// table of directions.
   Rgb evaluate(Texcoord uv, Direction light, Direction view, float lod) const override;
   void evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const override;
   bool has_lod() const override { return true; }
@@ -34,20 +35,25 @@ class SrbfRepresentation : public Representation {
 
  private:
   std::vector<std::byte> filtered_bytes() const;
+  void fill_row(std::size_t texel);
   struct Rows;
   Rows rows_around(Texcoord uv, float lod) const;
   void prefetch(const Rows& rows) const;
-  template <std::size_t K>
+  template <std::size_t K, Filtering filtering>
   Rgb decode(const Rows& rows, const Direction& light, const Direction& view) const;
-  template <std::size_t K>
+  template <std::size_t K, Filtering filtering>
   void decode_all(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
+  template <std::size_t K>
+  void decode_modes(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
 
   Model model_;
-  std::size_t wides_;      // groups of as many kernels as the CPU has lanes; the rest are quads
+  std::size_t wides_;      // groups of as many kernels as the CPU has lanes
+  std::size_t narrows_;    // and, of the rest, groups of four
   std::size_t angles_at_;  // in a row
   std::size_t row_;        // numbers of a texel, a multiple of the lanes
-  std::vector<float>
-      rows_;  // [level][texel][row_], times scale: [wide][slot][lane], [quad][slot][4], angles
+  // [level][texel][row_], times scale: [wide][slot][lane], [quad][slot][4], then the angles, or
+  // their cosines and sines where no numbers are blended.
+  std::vector<float> rows_;
   std::vector<std::size_t> first_texel_;  // of each level
 };
 

@@ -108,7 +108,7 @@ TexelFit TexelFitter::from_scratch(int starts, const DescentLimits& limits) {
   Kernels constant(shape_);
   std::ranges::copy(modes_.angles, constant.angles().begin());
   TexelFit best = as_it_is(std::move(constant));
-  for (int i = 0; i < starts + 1; ++i) {
+  for (int i = 0; i < starts + 1 && best.value.total > limits.enough; ++i) {
     Kernels guess = i < starts ? initial_guess(samples_, channels_, shape_, modes_.angles,
                                                static_cast<std::uint64_t>(i))
                                : guess_of_peaks();

@@ -237,9 +237,9 @@ TEST_CASE("SRBF: halfs err within 2 percent of what the fit did in double") {
   CHECK(error("half") == Approx(whole).epsilon(0.02));
 }
 
-TEST_CASE("SRBF: a lod between two levels blends their numbers, then evaluates once") {
+TEST_CASE("SRBF: between texels and levels lies the blend of what they are, or of their numbers") {
   const auto btf = realistic_btf(2, "regular:3x6");
-  const auto found = fitted(btf, {"bits=float", "kernels=3", "iterations=20"});
+  const auto found = fitted(btf, {"bits=float", "kernels=3", "iterations=20", "filtering=numbers"});
   const Model& model = model_of(*found);
   const Layout layout = model.layout();
   const Texcoord uv(0.25F, 0.75F);  // texel (0, 0)
@@ -264,6 +264,23 @@ TEST_CASE("SRBF: a lod between two levels blends their numbers, then evaluates o
     for (int c = 0; c < 3; ++c)
       CHECK(answer[c] == Approx(std::max(wanted[c], 0.0)).epsilon(1e-4).margin(1e-5));
   }
+
+  // The same numbers, blended as values: eight texels' own answers.
+  Model of_values = model;
+  of_values.filtering = Filtering::values;
+  const SrbfRepresentation values(std::move(of_values));
+  const Texcoord between(0.4F, 0.55F);
+  const auto at = [&](float u, float v, float lod) {
+    return values.evaluate({u, v}, light, view, lod);
+  };
+  const Rgb fine = (at(0.25F, 0.25F, 0) * 0.7F + at(0.75F, 0.25F, 0) * 0.3F) * 0.4F +
+                   (at(0.25F, 0.75F, 0) * 0.7F + at(0.75F, 0.75F, 0) * 0.3F) * 0.6F;
+  for (const float lod : {0.0F, 0.3F, 1.0F, 7.0F}) {
+    const float blend = std::min(lod, 1.0F);
+    const Rgb wanted = fine * (1 - blend) + at(0, 0, 1) * blend;
+    const Rgb answer = values.evaluate(between, light, view, lod);
+    CHECK((answer - wanted).length() < 1e-5F * wanted.length());
+  }
 }
 
 TEST_CASE("SRBF: free angles err less than fixed ones, several modes less than one") {
@@ -279,20 +296,21 @@ TEST_CASE("SRBF: free angles err less than fixed ones, several modes less than o
 }
 
 TEST_CASE("SRBF: texels that their parent misleads start again from a neighbour") {
-  // The edge between two materials runs through a column of parents.
+  // The edge between two materials runs through a column of parents; of one of them the other's
+  // neighbours never find the best kernels.
   const Kernels a = some_kernels({3, 3}, 4, 1);
-  const Kernels b = some_kernels({3, 3}, 9, 2);
+  const Kernels b = some_kernels({3, 3}, 16, 2);
   std::vector<Kernels> texels;
-  for (std::size_t t = 0; t < 64; ++t) texels.push_back(t % 8 < 3 ? a : b);
+  for (std::size_t t = 0; t < 64; ++t) texels.push_back(t % 8 < 5 ? a : b);
   const auto btf = btf_of(texels, 8, "regular:3x8");
   const auto fit_with = [&](const std::string& restarts) {
     return fitted(btf,
-                  {"kernels=6", "iterations=12", "modes=half-light-view", "restarts=" + restarts});
+                  {"kernels=3", "iterations=25", "modes=half-light-view", "restarts=" + restarts});
   };
   const auto with = fit_with("true");
   CHECK(level_of(*with, 0)["restarts"].get<int>() > 0);
   CHECK(level_of(*with, 0)["relative_rmse"].get<double>() <
-        0.9 * level_of(*fit_with("false"), 0)["relative_rmse"].get<double>());
+        0.8 * level_of(*fit_with("false"), 0)["relative_rmse"].get<double>());
 }
 
 TEST_CASE("SRBF: the smoothness term draws neighbours together, not across an edge if robust") {

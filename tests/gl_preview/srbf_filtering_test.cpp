@@ -22,7 +22,7 @@ TEST_CASE("SRBF numbers that the GPU filters decode nearly as those that the pro
       const auto fitted = codec_named("srbf").fit(
           btf,
           Settings::from_text("", "test",
-                              {"filtering=hardware", "kernels=5", "iterations=20", "bits=" + bits}),
+                              {"filtering=numbers", "kernels=5", "iterations=20", "bits=" + bits}),
           silent);
       std::vector<AppearanceQuery> queries;
       for (std::uint64_t i = 0; i < 4000; ++i)
@@ -38,7 +38,7 @@ TEST_CASE("SRBF numbers that the GPU filters decode nearly as those that the pro
           squares += std::pow(wanted[i][c], 2);
         }
       }
-      CHECK(std::sqrt(errors / squares) < 0.01);
+      CHECK(std::sqrt(errors / squares) < (bits == "8" ? 0.04 : 0.01));  // blends have 8 bits, too
     }
   }
 }
