@@ -2,6 +2,8 @@
 
 #include "codecs/gl_program.h"
 
+#include <algorithm>
+
 namespace weft {
 
 std::size_t bytes_per_texel(GlTexture::Format format) {
@@ -35,6 +37,19 @@ std::size_t bytes_per_texel(GlTexture::Format format) {
       return 16;
   }
   return 0;  // every format is named above
+}
+
+int level_side(int side, int level) {
+  return std::max(side >> level, 1);
+}
+
+std::size_t texel_count(const GlTexture& texture) {
+  std::size_t count = 0;
+  for (int level = 0; level < texture.levels; ++level) {
+    count += static_cast<std::size_t>(level_side(texture.width, level)) *
+             level_side(texture.height, level) * texture.layers;
+  }
+  return count;
 }
 
 bool is_integer(GlTexture::Format format) {

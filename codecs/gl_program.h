@@ -46,6 +46,10 @@ struct GlTexture {
 };
 
 std::size_t bytes_per_texel(GlTexture::Format format);
+/// Width or height of a level.
+int level_side(int side, int level);
+/// Of all layers of all levels: `bytes` holds as many.
+std::size_t texel_count(const GlTexture& texture);
 bool is_integer(GlTexture::Format format);
 
 /// `glsl` defines `vec3 btf_evaluate(vec2 uv, vec3 light, vec3 view, float lod)` in GLSL 4.50. It

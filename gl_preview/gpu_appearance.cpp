@@ -77,20 +77,12 @@ void refuse_above(int found, GLenum limit_name, const std::string& doing, const 
   }
 }
 
-int level_side(int side, int level) {
-  return std::max(side >> level, 1);
-}
-
 void check_size(const GlTexture& t, const std::string& doing) {
   if (t.width < 1 || t.height < 1 || t.layers < 1) {
     throw failed(doing, fmt::format("has a size of {} x {} x {}", t.width, t.height, t.layers));
   }
-  std::size_t texels = 0;
-  for (int level = 0; level < t.levels; ++level)
-    texels += static_cast<std::size_t>(level_side(t.width, level)) * level_side(t.height, level) *
-              t.layers;
-  if (t.kind == GlTexture::Kind::buffer) texels = static_cast<std::size_t>(t.width);
-  if (const std::size_t expected = texels * bytes_per_texel(t.format); t.bytes.size() != expected) {
+  if (const std::size_t expected = texel_count(t) * bytes_per_texel(t.format);
+      t.bytes.size() != expected) {
     throw failed(doing,
                  fmt::format("has {} bytes where {} were expected", t.bytes.size(), expected));
   }

@@ -159,8 +159,7 @@ TEST_CASE("Every codec: bytes are what its program uploads") {
     std::size_t uploaded = 0;
     for (const GlTexture& texture : fitted->gl_program().textures) {
       INFO(texture.name);
-      CHECK(texture.bytes.size() ==
-            bytes_per_texel(texture.format) * texture.width * texture.height * texture.layers);
+      CHECK(texture.bytes.size() == bytes_per_texel(texture.format) * texel_count(texture));
       uploaded += texture.bytes.size();
     }
     CHECK(uploaded <= fitted->bytes() + fitted->constant_bytes());

@@ -48,6 +48,12 @@ inline std::vector<FittedVariant> fitted_variants(const std::shared_ptr<const we
       combinations.push_back({"directions=interpolated", "filters=linear", "chroma_mean=cosine"});
       combinations.push_back({"filters=linear", "levels=1", "components_cb=3", "top=mean"});
     }
+    // Its descents take long, and decoders agree wherever they stop.
+    if (codec.name == "srbf") {
+      combinations.push_back({"modes=in-out", "kernels=17", "quantity=f"});
+      for (auto& combination : combinations)
+        combination.insert(combination.end(), {"iterations=8", "starts=1"});
+    }
     if (codec.name.starts_with("pca")) combinations.push_back({"bits=half", "components=5"});
     if (codec.name == "lobes") combinations.push_back({"lobes=1"});
     if (codec.name == "lafortune") combinations.push_back({"lobes=3"});
