@@ -17,12 +17,22 @@ namespace {
 
 constexpr int version = 1;
 constexpr std::size_t most_kernels = 64;
+constexpr const char* over_cosine = "B / cos(theta_light)";
 
 std::size_t number(const Json& json, const char* field, std::size_t most) {
   const std::size_t value = json.at(field);
   if (value < 1 || value > most)
     throw bad_input(field, fmt::format("{}; expected 1 to {}", value, most));
   return value;
+}
+
+// Whether a field has the second of two names.
+bool is_second(const Json& json, const char* field, const std::string& first,
+               const std::string& second) {
+  const std::string name = json.at(field);
+  if (name != first && name != second)
+    throw bad_input(field, fmt::format("'{}'; expected '{}' or '{}'", name, first, second));
+  return name == second;
 }
 
 void check_scales(const Model& model) {
@@ -41,8 +51,12 @@ Model model_from(const fs::path& folder, const Json& json, FittedHead head) {
     if (name_of(s) == storage) model.storage = s;
   }
   model.shape = {number(json, "kernels", most_kernels), number(json, "modes", most_modes)};
-  model.quantity = json.at("quantity") == "B" ? Quantity::radiance : Quantity::over_cosine;
-  model.filtering = json.at("filtering") == "numbers" ? Filtering::numbers : Filtering::values;
+  model.quantity =
+      is_second(json, "quantity", "B", over_cosine) ? Quantity::over_cosine : Quantity::radiance;
+  model.filtering =
+      is_second(json, "filtering", name_of(Filtering::values), name_of(Filtering::numbers))
+          ? Filtering::numbers
+          : Filtering::values;
   model.report = json.at("report").dump();
   model.scale = json.at("scale").get<std::vector<float>>();
   check_scales(model);
@@ -64,7 +78,7 @@ void write_model(const fs::path& folder, const Model& model) {
     return Json{{"storage", name_of(model.storage)},
                 {"kernels", model.shape.kernels},
                 {"modes", model.shape.modes},
-                {"quantity", model.quantity == Quantity::radiance ? "B" : "B / cos(theta_light)"},
+                {"quantity", model.quantity == Quantity::radiance ? "B" : over_cosine},
                 {"filtering", name_of(model.filtering)},
                 {"levels", model.sizes().levels()},
                 {"scale", model.scale},

@@ -377,6 +377,20 @@ TEST_CASE("SRBF: what diverges leaves its start") {
   CHECK(std::ranges::equal(end.kernels.values(), good.kernels.values()));
 }
 
+TEST_CASE("SRBF: a codec.json that names what there is not is refused") {
+  const TemporaryFolder folder;
+  fitted(realistic_btf(1, "regular:3x6"), {"kernels=2", "iterations=1"})->save(folder.path / "a");
+  const auto json_path = folder.path / "a" / "codec.json";
+  const std::string whole = read_text(json_path);
+  for (const auto& [field, value] :
+       {std::pair("filtering", "hardware"), std::pair("quantity", "f")}) {
+    auto json = nlohmann::json::parse(whole);
+    json[field] = value;
+    write_text_atomically(json_path, json.dump());
+    CHECK_THROWS_WITH(open_representation(folder.path / "a"), Catch::Contains(field));
+  }
+}
+
 TEST_CASE("SRBF: an interrupted fit continues from its last level, to the same bytes") {
   const auto btf = realistic_btf(4, "regular:3x6");
   const std::vector<std::string> parameters = {"kernels=4", "iterations=15"};
