@@ -76,7 +76,7 @@ fit tissue bits8 bits=8
 # value JSON FILTER
 value() { jq -r "$2" "$folder/$1"; }
 levels() { jq -r '[.report.levels[].relative_rmse * 1000 | round / 10] | map(tostring) | join(" | ")' "$folder/$1.srbf/codec.json"; }
-frames() { value "$1.fps.json" '.fps * 100 | round / 100'; }
+frames() { value "$1.fps.json" '.panes[0].fps * 10 | round / 10'; }
 picture() { value "$1.picture.json" '.relative_rmse * 1000 | round / 10'; }
 percent='(.relative_rmse * 1000 | round / 10)'
 
@@ -105,7 +105,7 @@ tables() {
     done
   done
   printf '\n### Preview (table 4.4)\n\n200 x 200 pixels by %s, frames a second, and the picture'"'"'s RMSE over the mean of what the data themselves show.\n\n' \
-    "$(value tissue-data.fps.json '.renderer // "OpenGL"')"
+    "$(value tissue-data.fps.json .gpu)"
   printf '| scene | kernels | values blended | error, %% | numbers blended | error, %% |\n|---|---|---|---|---|---|\n'
   for btf in checker rings tissue; do
     for row in "j10 J = 10" "optimal J = 20" "smooth J = 20, smooth"; do
