@@ -47,7 +47,7 @@ inline std::vector<FittedVariant> fitted_variants(const std::shared_ptr<const we
       combinations.push_back({"directions=interpolated", "filters=box2", "bits=half"});
       combinations.push_back({"directions=interpolated", "filters=linear", "chroma_mean=cosine"});
       combinations.push_back({"filters=linear", "levels=1", "components_cb=3", "top=mean"});
-      combinations.push_back({"levels=3"});
+      if (btf->width() >= 8 && btf->height() >= 8) combinations.push_back({"levels=3"});
     }
     // Its descents take long, and decoders agree wherever they stop.
     if (codec.name == "srbf") {
