@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "codecs/branchless_double.h"
+#include "codecs/normal_sums.h"
 
 namespace weft::lafortune {
 
@@ -39,9 +40,7 @@ NormalEquations<a_lobe * K + 1> normal_equations(const PairTable& pairs,
                                                  std::span<const double> values,
                                                  const Lafortune& model) {
   constexpr int n = a_lobe * K + 1;
-  std::array<std::array<Vec, n>, n> matrix{};
-  std::array<Vec, n> right{};
-  Vec error{};
+  NormalSums<n> sums;
   for (std::size_t i = 0; i < pairs.padded(); i += lanes) {
     const Vec cosine = load_lanes(pairs.cosine() + i);
     Vec residual = load_lanes(&values[i]) - cosine * model.diffuse;
@@ -59,19 +58,9 @@ NormalEquations<a_lobe * K + 1> normal_equations(const PairTable& pairs,
       row[a_lobe * k + 3] = slope * lane.log_product;
       residual -= height;
     }
-    error += residual * residual;
-    for (int a = 0; a < n; ++a) {
-      right[a] += row[a] * residual;
-      for (int b = 0; b <= a; ++b) matrix[a][b] += row[a] * row[b];
-    }
+    sums.add(row, residual);
   }
-  NormalEquations<n> normal;
-  normal.error = sum_of(error);
-  for (int a = 0; a < n; ++a) {
-    normal.right[a] = sum_of(right[a]);
-    for (int b = 0; b <= a; ++b) normal.matrix[a][b] = sum_of(matrix[a][b]);
-  }
-  return normal;
+  return sums.sums();
 }
 
 template <int K>

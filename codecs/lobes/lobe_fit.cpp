@@ -6,6 +6,7 @@
 #include <set>
 
 #include "codecs/branchless_double.h"
+#include "codecs/normal_sums.h"
 
 namespace weft::lobes {
 
@@ -60,9 +61,7 @@ template <int K>
 NormalEquations<a_lobe * K> normal_equations(const LightTable& lights,
                                              std::span<const double> values, const LobeSum& lobes) {
   constexpr int n = a_lobe * K;
-  std::array<std::array<Vec, n>, n> matrix{};
-  std::array<Vec, n> right{};
-  Vec error{};
+  NormalSums<n> sums;
   std::array<std::array<Vec3d, 2>, K> frame;
   for (int k = 0; k < K; ++k) frame[k] = tangents(lobes.lobe[k].axis);
   for (std::size_t i = 0; i < lights.padded(); i += lanes) {
@@ -79,19 +78,9 @@ NormalEquations<a_lobe * K> normal_equations(const LightTable& lights,
       row[a_lobe * k + 3] = slope * lane.log_cosine;
       residual -= lane.power * lobe.peak;
     }
-    error += residual * residual;
-    for (int a = 0; a < n; ++a) {
-      right[a] += row[a] * residual;
-      for (int b = 0; b <= a; ++b) matrix[a][b] += row[a] * row[b];
-    }
+    sums.add(row, residual);
   }
-  NormalEquations<n> normal;
-  normal.error = sum_of(error);
-  for (int a = 0; a < n; ++a) {
-    normal.right[a] = sum_of(right[a]);
-    for (int b = 0; b <= a; ++b) normal.matrix[a][b] = sum_of(matrix[a][b]);
-  }
-  return normal;
+  return sums.sums();
 }
 
 // A parameter at its bound that the gradient pushes beyond.
