@@ -170,11 +170,13 @@ void info(const Options& options, Session& session) {
   for (const char* key : {"parameters", "noise", "provenance"}) {
     if (json.contains(key)) measured[key] = json[key];
   }
+  // Before anything is printed, since it may be refused.
+  const ordered_json energies =
+      options.asymmetry ? describe_asymmetry(options, raw) : ordered_json();
   print(measured, session, "");
-  if (options.asymmetry) {
-    measured["asymmetry"] = describe_asymmetry(options, raw);
-    print_asymmetry(measured["asymmetry"], session);
-  }
+  if (!options.asymmetry) return;
+  measured["asymmetry"] = energies;
+  print_asymmetry(energies, session);
 }
 
 }  // namespace

@@ -73,6 +73,13 @@ TEST_CASE("info --asymmetry tells the energies of a texel's light fields and ref
   const Outcome outside = dataset.run({"info", "small.btf", "--asymmetry", "--texel", "4,0"});
   CHECK(outside.exit_code == 2);
   CHECK_THAT(outside.err, Contains("4,0") && Contains("4 x 2"));
+  CHECK(outside.out.empty());
+  REQUIRE(dataset.run({"compress", "small.btf", "--codec", "ptm", "-o", "small.ptm"}).exit_code ==
+          0);
+  const Outcome compressed = dataset.run({"info", "small.ptm", "--asymmetry"});
+  CHECK(compressed.exit_code == 2);
+  CHECK_THAT(compressed.err, Contains("small.ptm") && Contains("raw"));
+  CHECK(compressed.out.empty());
 }
 
 TEST_CASE("compress continues an interrupted fit, and leaves no checkpoint") {
