@@ -2,14 +2,11 @@
 
 #include <tbb/parallel_for.h>
 
-#ifdef __F16C__
-#include <immintrin.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
+
+#include "btf/sample_blend.h"
 
 namespace weft {
 
@@ -32,53 +29,6 @@ Cover cover(int coarse_index, int coarse_size, int fine_size) {
   return result;
 }
 
-using Float4 = float __attribute__((vector_size(16)));
-
-// Three channels of a sample, and the first of the one behind it.
-inline Float4 four_at(const float* p) {
-  Float4 values;
-  std::memcpy(&values, p, sizeof values);
-  return values;
-}
-inline Float4 four_at(const half* p) {
-#ifdef __F16C__
-  std::int64_t values;
-  std::memcpy(&values, p, sizeof values);
-  return (Float4)_mm_cvtph_ps(_mm_cvtsi64_si128(values));
-#else
-  return Float4{p[0], p[1], p[2], p[3]};
-#endif
-}
-
-// Where the last sample of all may be among them, nothing is read behind it. Texels side by side: a
-// sample's place and weight are loaded once for the four.
-template <bool at_end, typename Value>
-inline Rgb blended(const Value* values, std::size_t stride, const TexelStencil& texels,
-                   const SampleStencil& samples) {
-  std::array<const Value*, 4> texel;
-  for (std::size_t t = 0; t < 4; ++t) texel[t] = values + texels.index[t] * stride;
-  std::array<Float4, 4> sums{};
-  for (std::size_t v = 0; v < 3; ++v) {
-    for (std::size_t k = 4 * v; k < 4 * v + 3; ++k) {
-      for (std::size_t t = 0; t < 4; ++t) {
-        const Value* p = texel[t] + 3 * static_cast<std::ptrdiff_t>(samples.index[k]);
-        sums[t] += (at_end ? Float4{p[0], p[1], p[2], 0} : four_at(p)) * samples.weight[k];
-      }
-    }
-  }
-  Float4 sum{};
-  for (std::size_t t = 0; t < 4; ++t) sum += sums[t] * texels.weight[t];
-  return {sum[0], sum[1], sum[2]};
-}
-
-template <typename Value>
-inline Rgb blended(std::span<const Value> values, std::size_t n_texels, std::size_t stride,
-                   const TexelStencil& texels, const SampleStencil& samples) {
-  return std::ranges::max(texels.index) + 1 == n_texels
-             ? blended<true>(values.data(), stride, texels, samples)
-             : blended<false>(values.data(), stride, texels, samples);
-}
-
 }  // namespace
 
 SampleStencil sample_stencil(const Stencil& views, const Stencil& lights,
@@ -96,11 +46,7 @@ SampleStencil sample_stencil(const Stencil& views, const Stencil& lights,
 }
 
 Rgb blended(const Btf& level, const TexelStencil& texels, const SampleStencil& samples) {
-  const std::size_t stride = 3 * level.views().size() * level.lights().size();
-  const std::size_t n_texels = static_cast<std::size_t>(level.width()) * level.height();
-  return level.pixel_type() == PixelType::half
-             ? blended(level.halfs(), n_texels, stride, texels, samples)
-             : blended(level.floats(), n_texels, stride, texels, samples);
+  return with_sample_blend(level, [&](const auto& blend) { return blend(texels, samples); });
 }
 
 Btf next_mip_level(const Btf& finer) {

@@ -8,6 +8,7 @@
 
 #include "btf/btf_file.h"
 #include "btf/error.h"
+#include "btf/sample_blend.h"
 #include "codecs/raw/raw.h"
 #include "codecs/sample_check.h"
 #include "codecs/stencil_glsl.h"
@@ -148,8 +149,14 @@ Batch<Rgb> blended_in_batch(const std::vector<std::shared_ptr<const Btf>>& level
     return std::pair(levels[l]->width(), levels[l]->height());
   });
   Batch<Rgb> values;
-  for (std::size_t i = 0; i < batch_lanes; ++i)
-    values[i] = blended(*levels[level[i]], texels.lane(i), pairs[i]);
+  if (std::ranges::any_of(level, [&](std::int32_t l) { return l != level[0]; })) {
+    for (std::size_t i = 0; i < batch_lanes; ++i)
+      values[i] = blended(*levels[level[i]], texels.lane(i), pairs[i]);
+    return values;
+  }
+  with_sample_blend(*levels[level[0]], [&](const auto& blend) {
+    for (std::size_t i = 0; i < batch_lanes; ++i) values[i] = blend(texels.lane(i), pairs[i]);
+  });
   return values;
 }
 
