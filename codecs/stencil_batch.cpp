@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "codecs/transposed_lanes.h"
 #include "codecs/wide_vector.h"
 
 namespace weft {
@@ -135,42 +136,21 @@ AxisBatch axis_batch(const Batch<float>& place, const Batch<std::int32_t>& size)
 static_assert(sizeof(AppearanceQuery) == 9 * sizeof(float));
 
 #ifdef __AVX512F__
-// Four floats of each of sixteen queries, [float][query]. Query 4 j + k begins as quarter j of row
-// k, so that the four rows are transposed within quarters. Written number by number, they would be
-// read again side by side before they are in the cache.
-std::array<Vec16, 4> transposed(const float* first) {
-  constexpr std::size_t stride = 9;
-  const auto row = [&](std::size_t k) {
-    const auto quarter = [&](std::size_t j) { return load<Vec4>(first + (4 * j + k) * stride); };
-    return joined(joined(quarter(0), quarter(1)), joined(quarter(2), quarter(3)));
-  };
-  const std::array<Vec16, 4> rows{row(0), row(1), row(2), row(3)};
-  const auto low = [](const Vec16& a, const Vec16& b) {
-    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
-  };
-  const auto high = [](const Vec16& a, const Vec16& b) {
-    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15,
-                                   31);
-  };
-  // 0 0' 1 1' of rows 0 and 2, of rows 1 and 3, then of those two.
-  const Vec16 even = low(rows[0], rows[2]);
-  const Vec16 odd = low(rows[1], rows[3]);
-  const Vec16 even_high = high(rows[0], rows[2]);
-  const Vec16 odd_high = high(rows[1], rows[3]);
-  return {low(even, odd), high(even, odd), low(even_high, odd_high), high(even_high, odd_high)};
-}
-
 void spread(const AppearanceQuery* queries, QueryBatch& batch) {
+  constexpr std::size_t stride = 9;
   const float* first = &queries[0].uv.x;
+  const auto four_from = [&](std::size_t k) {
+    return transposed([&](std::size_t lane) { return first + k + lane * stride; });
+  };
   const auto store = [](const Vec16& values, Batch<float>& lanes) {
     std::memcpy(lanes.data(), &values, sizeof values);
   };
-  const std::array<Vec16, 4> front = transposed(first);  // u, v, x and y of light
+  const std::array<Vec16, 4> front = four_from(0);  // u, v, x and y of light
   store(front[0], batch.u);
   store(front[1], batch.v);
   store(front[2], batch.light.x);
   store(front[3], batch.light.y);
-  const std::array<Vec16, 4> back = transposed(first + 4);  // its z, and view
+  const std::array<Vec16, 4> back = four_from(4);  // its z, and view
   store(back[0], batch.light.z);
   store(back[1], batch.view.x);
   store(back[2], batch.view.y);

@@ -86,24 +86,29 @@ Decoder::Decoder(const Model& model)
       single_terms_ && model.factors.size() == 3 && model.factors[1].projection == Projection::half;
   for (int step = 0; step < rotation_steps; ++step) {
     const double angle = -2 * std::numbers::pi * step / rotation_steps;
-    turn_back_[step] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+    turn_back_cosine_[step] = static_cast<float>(std::cos(angle));
+    turn_back_sine_[step] = static_cast<float>(std::sin(angle));
   }
-  for (const std::uint8_t steps : model.rotation) turns_.push_back(turn_back_[steps]);
+  for (const std::uint8_t steps : model.rotation) turns_.push_back(turn_back(steps));
   for (std::size_t t = 0; t < texels_.size(); ++t) {
     const Rgb scale = (model.scale.size() > 0 ? model.scale_of(t) : Rgb(1, 1, 1)) * unit;
-    texels_[t].scale = Vec4{scale.x, scale.y, scale.z, 0};
-    for (std::size_t f = 0; f < model.factors.size(); ++f)
-      texels_[t].map[f] = model.map_of(f, t) * model.factors[f].terms * map_values_;
+    const float steps = model.rotation.empty() ? 0 : model.rotation[t];
+    texels_[t].scale_and_steps = Vec4{scale.x, scale.y, scale.z, steps};
+    for (std::size_t f = 0; f < model.factors.size(); ++f) {
+      texels_[t].map[f] = static_cast<std::uint32_t>(model.map_of(f, t) * model.factors[f].terms);
+    }
   }
+  if (!plain_ || !model.clustered || bytes_[0] == nullptr) return;
+  for (std::size_t f = 0; f < pairs_.size(); ++f)
+    pairs_[f] = texel_pairs(model.factors[f].maps.bytes, model.resolution);
 }
 
 template <typename Value>
 Vec4 Decoder::product(const Value* const* maps, const Texel& texel, const MapPlaces& places) const {
-  Vec4 result = texel.scale;
+  Vec4 result = texel.scale_and_steps;
   if (single_terms_) {
     for (std::size_t f = 0; f < model_.factors.size(); ++f)
-      result *= looked_up(maps[f] + texel.map[f] + places[f].first, row_values_, places[f].across,
-                          places[f].down);
+      result *= looked_up(maps[f] + texel.map[f] * map_values_, row_values_, places[f]);
     return result;
   }
   for (int link = 0; link < link_count; ++link) {
@@ -115,8 +120,7 @@ Vec4 Decoder::product(const Value* const* maps, const Texel& texel, const MapPla
       for (std::size_t f = 0; f < model_.factors.size(); ++f) {
         const Factor& factor = model_.factors[f];
         if (link_of(factor.projection) != link || term >= factor.terms) continue;
-        one *= looked_up(maps[f] + texel.map[f] + term * map_values_ + places[f].first, row_values_,
-                         places[f].across, places[f].down);
+        one *= looked_up(maps[f] + (texel.map[f] + term) * map_values_, row_values_, places[f]);
         has_term = true;
       }
       if (!has_term) break;
@@ -146,24 +150,25 @@ Rgb Decoder::value(std::size_t texel, const MapPlaces& places) const {
 template <typename Texels, typename LookUp>
 [[gnu::always_inline]] inline Vec4 Decoder::plain_sum(const Texels& texels,
                                                       const LookUp& look_up) const {
-  const auto sum_in = [&](const auto& maps) {
+  const auto sum_in = [&](const auto& maps, std::size_t stride) {
     Vec4 sum{};
     for (std::size_t t = 0; t < 4; ++t) {
       const auto [index, weight] = texels(t);
       const Texel& texel = texels_[index];
-      Vec4 product = texel.scale * weight;
-      for (std::size_t f = 0; f < 3; ++f) product *= look_up(maps[f] + texel.map[f], f, t);
+      Vec4 product = texel.scale_and_steps * weight;
+      for (std::size_t f = 0; f < 3; ++f) product *= look_up(&maps[f][texel.map[f] * stride], f, t);
       sum += product;
     }
     return sum;
   };
-  return bytes_[0] != nullptr ? sum_in(bytes_) : sum_in(floats_);
+  if (!pairs_[0].empty()) return sum_in(pairs_, pairs_a_map(model_.resolution));
+  return bytes_[0] != nullptr ? sum_in(bytes_, map_values_) : sum_in(floats_, map_values_);
 }
 
 MapPlaces Decoder::places(const Direction& light_asked, const Direction& view_asked,
                           int rotation) const {
-  const Direction light = turned(light_asked, turn_back_[rotation]);
-  const Direction view = turned(view_asked, turn_back_[rotation]);
+  const Direction light = turned(light_asked, turn_back(rotation));
+  const Direction view = turned(view_asked, turn_back(rotation));
   const PlaneQuad images = has_difference_
                                ? plane_images(light, view, difference_vector(light, view))
                                : plane_images(light, view);
@@ -185,7 +190,7 @@ Vec4 Decoder::level_value(const Level& level, const Texcoord& uv, const MapPlace
   return plain_sum(
       [&](std::size_t t) { return std::pair(level.first + stencil.index[t], stencil.weight[t]); },
       [&](const auto* map, std::size_t f, std::size_t) {
-        return looked_up(map + places[f].first, row_values_, places[f].across, places[f].down);
+        return looked_up(map, row_values_, places[f]);
       });
 }
 
@@ -218,8 +223,7 @@ Vec4 Decoder::turned_level_value(const Level& level, const Texcoord& uv, const D
   return plain_sum(
       [&](std::size_t t) { return std::pair(level.first + stencil.index[t], stencil.weight[t]); },
       [&](const auto* map, std::size_t f, std::size_t t) {
-        const MapPlace& place = places[f][t];
-        return looked_up(map + place.first, row_values_, place.across, place.down);
+        return looked_up(map, row_values_, places[f][t]);
       });
 }
 
@@ -252,6 +256,13 @@ void Decoder::evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> 
       answers[i] = evaluate(queries[i].uv, queries[i].light, queries[i].view, queries[i].lod);
     return;
   }
+#ifdef __AVX512F__
+  if (!pairs_[0].empty()) {
+    decode_in_batches(queries, answers,
+                      [this](const QueryBatch& batch) { return decode_pairs(batch); });
+    return;
+  }
+#endif
   decode_in_batches(queries, answers, [this](const QueryBatch& batch) { return decode(batch); });
 }
 
@@ -331,7 +342,7 @@ void Decoder::add_level(const TexelBatch& texels, const std::array<PlaneLanes, m
     sums[i] +=
         plain_sum([&](std::size_t t) { return std::pair(texels.index[t][i], texels.weight[t][i]); },
                   [&](const auto* map, std::size_t f, std::size_t) {
-                    return looked_up(map + places[f].first[i], row_values_, weight[f]);
+                    return looked_up(map, row_values_, places[f].lane(i), weight[f]);
                   });
   }
 }
@@ -364,8 +375,7 @@ void Decoder::add_turned_level(const TexelBatch& texels,
     sums[i] +=
         plain_sum([&](std::size_t t) { return std::pair(texels.index[t][i], texels.weight[t][i]); },
                   [&](const auto* map, std::size_t f, std::size_t t) {
-                    const MapPlace place = places[t][f].lane(i);
-                    return looked_up(map + place.first, row_values_, place.across, place.down);
+                    return looked_up(map, row_values_, places[t][f].lane(i));
                   });
   }
 }

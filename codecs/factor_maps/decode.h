@@ -13,6 +13,7 @@
 #include "btf/appearance.h"
 #include "codecs/factor_maps/map_places.h"
 #include "codecs/factor_maps/model.h"
+#include "codecs/factor_maps/texel_pairs.h"
 #include "codecs/stencil_batch.h"
 #include "codecs/wide_vector.h"
 
@@ -41,11 +42,14 @@ class Decoder {
   void evaluate(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
 
  private:
-  /// What a texel knows: its scale with the bytes' 1 / 255 in it, and its maps' first values.
-  struct Texel {
-    Vec4 scale;
-    std::array<std::size_t, max_factors> map;
+  /// What a texel knows, in half a cache line: its scale with the bytes' 1 / 255 in it, by how many
+  /// steps it is turned (a float too: as a whole number it would be a subnormal one in the fourth
+  /// lane of sums, and slow), and the number of its first map of each factor.
+  struct alignas(32) Texel {
+    Vec4 scale_and_steps;
+    std::array<std::uint32_t, max_factors> map;
   };
+  Turn turn_back(int steps) const { return {turn_back_cosine_[steps], turn_back_sine_[steps]}; }
   template <typename Value>
   Vec4 product(const Value* const* maps, const Texel& texel, const MapPlaces& places) const;
   Vec4 texel_value(std::size_t texel, const MapPlaces& places) const;
@@ -62,6 +66,11 @@ class Decoder {
                  Batch<Vec4>& sums) const;
   void add_turned_level(const TexelBatch& texels, const std::array<PlaneLanes, max_factors>& images,
                         Batch<Vec4>& sums) const;
+#ifdef __AVX512F__
+  void add_level_of_pairs(const TexelBatch& texels,
+                          const std::array<PlaneLanes, max_factors>& images, RgbLanes& sums) const;
+  Batch<Rgb> decode_pairs(const QueryBatch& batch) const;
+#endif
   Batch<Rgb> decode(const QueryBatch& batch) const;
 
   const Model& model_;
@@ -72,9 +81,11 @@ class Decoder {
   std::size_t row_values_ = 0;  // of a map
   std::array<const std::uint8_t*, max_factors> bytes_{};
   std::array<const float*, max_factors> floats_{};
+  std::array<std::vector<TexelPair>, 3> pairs_;  // of plain codebooks of bytes
   std::vector<Texel> texels_;
-  std::vector<Turn> turns_;  // of each texel; none where none is turned
-  std::array<Turn, rotation_steps> turn_back_;
+  std::vector<Turn> turns_;  // of each texel, for single queries; none where none is turned
+  alignas(64) std::array<float, rotation_steps> turn_back_cosine_;
+  alignas(64) std::array<float, rotation_steps> turn_back_sine_;
 };
 
 }  // namespace weft::factor_maps

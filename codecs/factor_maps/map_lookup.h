@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "codecs/factor_maps/map_places.h"
 #include "codecs/wide_vector.h"
 
 namespace weft::factor_maps {
@@ -55,12 +56,14 @@ inline Vec16 two_rows(const float* row, std::size_t row_values) {
   return joined(load<Vec8>(row), load<Vec8>(row + row_values - 2));
 }
 
-/// One lookup in a map.
-/// @param first  the red of the upper left texel.
+/// One lookup.
+/// @param map  its first value.
 template <typename Value>
-[[gnu::always_inline]] inline Vec4 looked_up(const Value* first, std::size_t row_values,
-                                             float across, float down) {
-  const Vec16 rows = two_rows(first, row_values);
+[[gnu::always_inline]] inline Vec4 looked_up(const Value* map, std::size_t row_values,
+                                             const MapPlace& place) {
+  const float across = place.across;
+  const float down = place.down;
+  const Vec16 rows = two_rows(map + 3 * static_cast<std::size_t>(place.first), row_values);
 #ifdef __AVX512F__
   const Vec16 right =
       __builtin_shufflevector(rows, rows, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2);
@@ -111,10 +114,11 @@ inline Vec4 folded(const Vec16& v) {
   return low(rows + __builtin_shufflevector(rows, rows, 3, 4, 5, 6, 7, 0, 1, 2));
 }
 
+/// @param weight  `blend_weights` of the place.
 template <typename Value>
-[[gnu::always_inline]] inline Vec4 looked_up(const Value* first, std::size_t row_values,
-                                             const Vec16& weight) {
-  return folded(two_rows(first, row_values) * weight);
+[[gnu::always_inline]] inline Vec4 looked_up(const Value* map, std::size_t row_values,
+                                             const MapPlace& place, const Vec16& weight) {
+  return folded(two_rows(map + 3 * static_cast<std::size_t>(place.first), row_values) * weight);
 }
 
 }  // namespace weft::factor_maps

@@ -15,7 +15,7 @@ namespace weft::factor_maps {
 
 /// Where a direction lies in a map: the upper left of its four texels, and how they blend.
 struct MapPlace {
-  std::int32_t first;  ///< of the map's values, that texel's red
+  std::int32_t first;  ///< that one's number, row by row
   float across;        ///< 0 at the left, 1 at the right
   float down;          ///< 0 in the upper row, 1 in the lower
 };
@@ -43,7 +43,7 @@ inline PlaceLanes place_lanes(const PlaneLanes& image, int resolution) {
     const float y = std::min(std::max(0.0F, (1 - image.y[i]) * 0.5F * last), last);
     const int column = std::min(static_cast<int>(x), resolution - 2);
     const int row = std::min(static_cast<int>(y), resolution - 2);
-    places.first[i] = 3 * (row * resolution + column);
+    places.first[i] = row * resolution + column;
     places.across[i] = x - static_cast<float>(column);
     places.down[i] = y - static_cast<float>(row);
   }
@@ -73,7 +73,7 @@ inline std::array<MapPlace, 4> map_places(const PlaneQuad& images, int resolutio
   };
   const Int4 column = whole(x);
   const Int4 row = whole(y);
-  const Int4 first = 3 * (row * resolution + column);
+  const Int4 first = row * resolution + column;
   const Vec4 across = x - __builtin_convertvector(column, Vec4);
   const Vec4 down = y - __builtin_convertvector(row, Vec4);
   std::array<MapPlace, 4> places;
