@@ -23,7 +23,8 @@ constexpr double allowed = 0.005;
 /// A step in depth of this share of it, from a pixel to the next, is a silhouette.
 constexpr float depth_step = 0.05F;
 
-Scene scene_of(const std::string& shape, const std::shared_ptr<const Appearance>& appearance) {
+Scene scene_of(const std::string& shape, const std::shared_ptr<const Appearance>& appearance,
+               const std::string& repeat = "[6, 4]") {
   const std::string text = R"(
     camera = { type = "perspective", eye = [1, -4.5, 2.5], target = [0, 0, 0], up = [0, 0, 1], fov = 36, size = [120, 90] }
     shape = [ { type = ")" +
@@ -35,8 +36,7 @@ Scene scene_of(const std::string& shape, const std::shared_ptr<const Appearance>
     [material.paint]
     type = "btf"
     file = "given.btf"
-    repeat = [6, 4]
-  )";
+    repeat = )" + repeat;
   const TemporaryFolder folder;
   write_text_atomically(folder.path / "scene.toml", text);
   return read_scene(folder.path / "scene.toml",
@@ -126,7 +126,7 @@ TEST_CASE("Frames, texcoords and lights are the path tracer's on every shape") {
 
 TEST_CASE("Every codec looks the same in the preview and in the path tracer") {
   if (!gl_or_skip()) return;
-  const auto btf = procedural_btf(16, 16, "ubo81", PixelType::half);
+  const auto btf = procedural_btf(8, 8, "ubo81", PixelType::half);
   for (FittedVariant& variant : fitted_variants(btf)) {
     const std::shared_ptr<const Appearance> appearance = std::move(variant.representation);
     for (const char* shape : {"cube", "torus", "seashell"}) {
@@ -139,12 +139,12 @@ TEST_CASE("Every codec looks the same in the preview and in the path tracer") {
 
 TEST_CASE("Footprints from screen derivatives choose the path tracer's levels") {
   if (!gl_or_skip()) return;
-  const auto btf = procedural_btf(16, 16, "regular:2x4", PixelType::half);
+  const auto btf = procedural_btf(8, 8, "regular:2x4", PixelType::half);
   for (FittedVariant& variant : fitted_variants(btf)) {
     if (!variant.representation->has_lod()) continue;
     const std::shared_ptr<const Appearance> appearance = std::move(variant.representation);
     for (const char* shape : {"cube", "torus"}) {
-      const double found = disagreement(scene_of(shape, appearance), {});
+      const double found = disagreement(scene_of(shape, appearance, "[12, 8]"), {});
       INFO(variant.name << " on " << shape << ": " << found);
       // A 2 x 2 block of pixels shares its derivatives.
       CHECK(found < 0.02);
