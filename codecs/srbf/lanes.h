@@ -37,7 +37,8 @@ inline Lanes exp_below_zero(Lanes x) {
   const Lanes whole = shifted - 12582912.0F;
   const Lanes r = (x - whole * 0.693359375F) + whole * 2.12194440e-4F;  // ln 2 in two pieces
   const Lanes p =
-      1 + r * (1 + r * (0.5F + r * (1.0F / 6 + r * (1.0F / 24 + r * (1.0F / 120 + r / 720)))));
+      1 +
+      r * (1 + r * (0.5F + r * (1.0F / 6 + r * (1.0F / 24 + r * (1.0F / 120 + r * (1.0F / 720))))));
   Bits bits;
   std::memcpy(&bits, &shifted, sizeof bits);
   bits = (bits << 23) + (127 << 23);

@@ -35,26 +35,57 @@ Turn turn(const Vec4& angle) {
   return {cosine * sign, sine * sign};
 }
 
-// Every mode's psi: [xyz][mode]. A call would empty the vector registers.
-using Psi = std::array<float, 12>;
-[[gnu::always_inline]] inline Psi variables(const Turn& turned, const Direction& light,
-                                            const Direction& view) {
-  std::array<Vec4, 3> sum;
-  Vec4 square = Vec4{} + smallest_square;
+// What every mode's directions are multiplied by, over the length: modes lie side by side, those of
+// several texels one after the other.
+template <typename Lanes>
+using Psi = std::array<Lanes, 3>;  // [xyz]
+// A call would empty the vector registers.
+template <typename Lanes>
+[[gnu::always_inline]] inline Psi<Lanes> variables(const Lanes& cosine, const Lanes& sine,
+                                                   const Direction& light, const Direction& view) {
+  Psi<Lanes> psi;
+  Lanes square = Lanes{} + smallest_square;
   for (int c = 0; c < 3; ++c) {
-    sum[c] = turned.cosine * light[c] + turned.sine * view[c];
-    square += sum[c] * sum[c];
+    psi[c] = cosine * light[c] + sine * view[c];
+    square += psi[c] * psi[c];
   }
-  const Vec4 inverse = 1 / square_root(square);
-  Psi psi;
-  for (std::size_t c = 0; c < 3; ++c) store(&psi[4 * c], sum[c] * inverse);
+  const Lanes inverse = 1 / square_root(square);
+  for (Lanes& of : psi) of *= inverse;
   return psi;
 }
 
-template <typename Lanes>
-struct Sums {
-  Lanes rgb[3] = {};  // NOLINT
-};
+// Some quads of `texels_a_wide` texels.
+constexpr std::size_t texels_a_wide = wide_lanes / 4;
+using TexelQuads = std::array<const float*, texels_a_wide>;
+[[gnu::always_inline]] inline Wide side_by_side(const TexelQuads& texels, std::size_t first) {
+#ifdef __AVX512F__
+  return joined_at(texels[0] + first, texels[1] + first, texels[2] + first, texels[3] + first);
+#else
+  return joined(load<Vec4>(texels[0] + first), load<Vec4>(texels[1] + first));
+#endif
+}
+
+// Number k of each quad, four times.
+template <int k>
+Wide of_each_quad(const Wide& v) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(v, v, k, k, k, k, 4 + k, 4 + k, 4 + k, 4 + k, 8 + k, 8 + k, 8 + k,
+                                 8 + k, 12 + k, 12 + k, 12 + k, 12 + k);
+#else
+  return __builtin_shufflevector(v, v, k, k, k, k, 4 + k, 4 + k, 4 + k, 4 + k);
+#endif
+}
+
+// Each of four numbers four times.
+inline auto spread(const Vec4& v) {
+  const Vec8 low = __builtin_shufflevector(v, v, 0, 0, 0, 0, 1, 1, 1, 1);
+  const Vec8 high = __builtin_shufflevector(v, v, 2, 2, 2, 2, 3, 3, 3, 3);
+#ifdef __AVX512F__
+  return std::array{joined(low, high)};
+#else
+  return std::array{low, high};
+#endif
+}
 
 template <std::size_t K, typename Lanes>
 [[gnu::always_inline]] inline Lanes minus_lengths(const float* slot) {
@@ -71,12 +102,26 @@ template <std::size_t K, typename Lanes>
   return sum;
 }
 
+// Red, green and blue, of some kernels side by side.
+template <typename Lanes>
+struct Sums {
+  Lanes rgb[3] = {};  // NOLINT
+};
+
+// Modes' psi of up to four texels, [xyz][texel][mode].
+using PsiNumbers = std::array<float, 48>;
+constexpr std::size_t psi_place(std::size_t texel, std::size_t mode, std::size_t c) {
+  return 16 * c + 4 * texel + mode;
+}
+
 // Equations 3.4 and 3.5 of some kernels of several texels, which wait for one another least where
-// each step is taken for all. `slot` of a texel is [slot][lane].
+// each step is taken for all. `slot` of a texel is [slot][lane]; that of the next query's is
+// fetched on the way, a line a step: asked for all at once, memory would stop everything else.
 template <std::size_t K, std::size_t texels, Filtering filtering, typename Lanes>
 [[gnu::always_inline]] inline void add_kernels(const std::array<const float*, texels>& slot,
-                                               const std::array<Psi, texels>& psi,
-                                               const float* weight, Sums<Lanes>& sums) {
+                                               const std::array<const float*, texels>& next,
+                                               const PsiNumbers& psi, const float* weight,
+                                               Sums<Lanes>& sums) {
   constexpr std::size_t step = sizeof(Lanes) / sizeof(float);
   std::array<Lanes, texels> exponent;
   for (std::size_t t = 0; t < texels; ++t) {
@@ -86,25 +131,113 @@ template <std::size_t K, std::size_t texels, Filtering filtering, typename Lanes
       exponent[t] = minus_lengths<K, Lanes>(slot[t]);
   }
   for (std::size_t m = 0; m < 3 * K; ++m) {
-    for (std::size_t t = 0; t < texels; ++t)
-      exponent[t] += load<Lanes>(slot[t] + m * step) * psi[t][m % 3 * 4 + m / 3];
+    for (std::size_t t = 0; t < texels; ++t) {
+      if constexpr (filtering == Filtering::values) __builtin_prefetch(next[t] + m * step);
+      exponent[t] += load<Lanes>(slot[t] + m * step) * psi[psi_place(t, m / 3, m % 3)];
+    }
   }
   constexpr std::size_t colour = (slots_of(K, filtering) - 3) * step;
   for (std::size_t t = 0; t < texels; ++t) {
     const Lanes value = exp_below_zero(exponent[t]) * weight[t];
+    if constexpr (filtering == Filtering::values) {
+      for (std::size_t m = 3 * K; m < slots_of(K, filtering); ++m)
+        __builtin_prefetch(next[t] + m * step);
+    }
     for (std::size_t c = 0; c < 3; ++c)
       sums.rgb[c] += value * load<Lanes>(slot[t] + colour + c * step);
   }
 }
 
-}  // namespace
+// Four kernels of each of several texels at once, [slot][4] from `first` on.
+template <std::size_t K>
+[[gnu::always_inline]] inline void add_quads(const TexelQuads& texels, std::size_t first,
+                                             const Psi<Wide>& psi, const Wide& weight,
+                                             Sums<Wide>& sums) {
+  Wide exponent = Wide{} - side_by_side(texels, first + 3 * K * 4);
+  const auto add_mode = [&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+    for (std::size_t c = 0; c < 3; ++c)
+      exponent += side_by_side(texels, first + (3 * k + c) * 4) * of_each_quad<k>(psi[c]);
+  };
+  [&]<std::size_t... k>(std::index_sequence<k...>) {
+    (add_mode(std::integral_constant<std::size_t, k>{}), ...);
+  }
+  (std::make_index_sequence<K>{});
+  const Wide value = exp_below_zero(exponent) * weight;
+  constexpr std::size_t colour = (slots_of(K, Filtering::values) - 3) * 4;
+  for (std::size_t c = 0; c < 3; ++c)
+    sums.rgb[c] += value * side_by_side(texels, first + colour + 4 * c);
+}
 
-// The texels that a query blends, and how.
-struct SrbfRepresentation::Rows {
-  std::size_t count;
-  std::array<const float*, 8> row;
-  std::array<float, 8> weight;
-};
+// What four texels' kernels sum up to. Those beyond a multiple of the lanes are summed up for
+// several texels at once.
+template <std::size_t K>
+[[gnu::always_inline]] inline void add_texels(const RowPlaces& places, const float* const* row,
+                                              const float* const* next_row, const float* weight,
+                                              const Direction& light, const Direction& view,
+                                              Sums<Wide>& sums) {
+  constexpr std::size_t slots = slots_of(K, Filtering::values);
+  constexpr std::size_t parts = 4 / texels_a_wide;
+  std::array<TexelQuads, parts> texels;
+  std::array<Psi<Wide>, parts> psi;
+  alignas(64) PsiNumbers numbers;
+  for (std::size_t i = 0; i < parts; ++i) {
+    std::copy_n(row + i * texels_a_wide, texels_a_wide, texels[i].begin());
+    psi[i] = variables(side_by_side(texels[i], places.angles_at),
+                       side_by_side(texels[i], places.angles_at + 4), light, view);
+    for (std::size_t c = 0; c < 3; ++c)
+      store(&numbers[psi_place(i * texels_a_wide, 0, c)], psi[i][c]);
+  }
+  // The quads first: what was just written side by side would have to be waited for if it were read
+  // number by number.
+  const std::array<Wide, parts> weights = spread(load<Vec4>(weight));
+  for (std::size_t i = 0; i < places.narrows; ++i) {
+    const std::size_t first = (places.wides * wide_lanes + 4 * i) * slots;
+    for (std::size_t part = 0; part < parts; ++part)
+      add_quads<K>(texels[part], first, psi[part], weights[part], sums);
+  }
+  std::array<const float*, 4> slot;
+  std::array<const float*, 4> next;
+  std::copy_n(row, 4, slot.begin());
+  std::copy_n(next_row, 4, next.begin());
+  for (std::size_t i = 0; i < places.wides; ++i) {
+    add_kernels<K, 4, Filtering::values>(slot, next, numbers, weight, sums);
+    for (const float*& at : slot) at += wide_lanes * slots;
+    for (const float*& at : next) at += wide_lanes * slots;
+  }
+  for (const float* at : next)
+    for (std::size_t i = 0; i < places.size - places.wides * wide_lanes * slots; i += wide_lanes)
+      __builtin_prefetch(at + i);
+}
+
+// What the kernels sum up to whose numbers are the texels' blended ones.
+template <std::size_t K>
+[[gnu::always_inline]] inline void add_blended(const RowPlaces& places, const Rows& rows,
+                                               const Rows& next, const Direction& light,
+                                               const Direction& view, Sums<Wide>& sums) {
+  constexpr std::size_t slots = slots_of(K, Filtering::numbers);
+  alignas(64) std::array<float, longest_row> row;
+  for (std::size_t i = 0; i < places.size; i += wide_lanes) {
+    Wide sum = load<Wide>(rows.row[0] + i) * rows.weight[0];
+    for (std::size_t t = 0; t < next.count; ++t) __builtin_prefetch(next.row[t] + i);
+    for (std::size_t t = 1; t < rows.count; ++t)
+      sum += load<Wide>(rows.row[t] + i) * rows.weight[t];
+    store(&row[i], sum);
+  }
+  const Turn turned = turn(load<Vec4>(&row[places.angles_at]));
+  const Psi<Vec4> psi = variables(turned.cosine, turned.sine, light, view);
+  PsiNumbers numbers;
+  for (std::size_t c = 0; c < 3; ++c) store(&numbers[psi_place(0, 0, c)], psi[c]);
+  constexpr float all = 1;
+  std::array<const float*, 1> slot{row.data()};
+  for (std::size_t i = 0; i < places.wides; ++i, slot[0] += wide_lanes * slots)
+    add_kernels<K, 1, Filtering::numbers>(slot, slot, numbers, &all, sums);
+  Sums<Vec4> narrow;
+  for (std::size_t i = 0; i < places.narrows; ++i, slot[0] += 4 * slots)
+    add_kernels<K, 1, Filtering::numbers>(slot, slot, numbers, &all, narrow);
+  for (std::size_t c = 0; c < 3; ++c) sums.rgb[c][0] += sum_of(narrow.rgb[c]);
+}
+
+}  // namespace
 
 SrbfRepresentation::SrbfRepresentation(Model model) : model_(std::move(model)) {
   for (int level = 0; level < model_.sizes().levels(); ++level)
@@ -112,11 +245,11 @@ SrbfRepresentation::SrbfRepresentation(Model model) : model_(std::move(model)) {
   const Layout layout = model_.layout();
   const std::size_t slots = slots_of(model_.shape.modes, model_.filtering);
   const std::size_t angles = model_.filtering == Filtering::values ? 8 : 4;
-  wides_ = 4 * layout.groups() / wide_lanes;
-  narrows_ = layout.groups() - wides_ * wide_lanes / 4;
-  angles_at_ = 4 * layout.groups() * slots;
-  row_ = (angles_at_ + angles + wide_lanes - 1) / wide_lanes * wide_lanes;
-  rows_.resize(model_.texels() * row_);
+  places_.wides = 4 * layout.groups() / wide_lanes;
+  places_.narrows = layout.groups() - places_.wides * wide_lanes / 4;
+  places_.angles_at = 4 * layout.groups() * slots;
+  places_.size = (places_.angles_at + angles + wide_lanes - 1) / wide_lanes * wide_lanes;
+  rows_.resize(model_.texels() * places_.size);
   for (std::size_t texel = 0; texel < model_.texels(); ++texel) fill_row(texel);
 }
 
@@ -125,10 +258,10 @@ void SrbfRepresentation::fill_row(std::size_t texel) {
   const std::size_t modes = model_.shape.modes;
   const std::size_t slots = slots_of(modes, model_.filtering);
   const float* values = &model_.values[texel * model_.row()];
-  float* row = &rows_[texel * row_];
+  float* row = &rows_[texel * places_.size];
   const auto number = [&](std::size_t place) { return values[place] * model_.scale[place]; };
   for (std::size_t j = 0; j < 4 * layout.groups(); ++j) {
-    const bool is_wide = j < wides_ * wide_lanes;
+    const bool is_wide = j < places_.wides * wide_lanes;
     const std::size_t lanes = is_wide ? wide_lanes : 4;
     float* lane = row + j / lanes * lanes * slots + j % lanes;
     double lengths = 0;
@@ -147,7 +280,7 @@ void SrbfRepresentation::fill_row(std::size_t texel) {
   }
   for (std::size_t k = 0; k < 4; ++k) {
     const float angle = number(layout.angle_place(k));
-    float* to = row + angles_at_ + k;
+    float* to = row + places_.angles_at + k;
     if (model_.filtering == Filtering::values) {
       to[0] = std::cos(angle);
       to[4] = std::sin(angle);
@@ -157,7 +290,7 @@ void SrbfRepresentation::fill_row(std::size_t texel) {
   }
 }
 
-SrbfRepresentation::Rows SrbfRepresentation::rows_around(Texcoord uv, float lod) const {
+Rows SrbfRepresentation::rows_around(Texcoord uv, float lod) const {
   const MipSizes sizes = model_.sizes();
   const float top = static_cast<float>(first_texel_.size() - 1);
   const float lambda = lod > 0 ? std::min(lod, top) : 0;  // a NaN is level 0
@@ -169,7 +302,7 @@ SrbfRepresentation::Rows SrbfRepresentation::rows_around(Texcoord uv, float lod)
     const int at = level + (i > 0 ? 1 : 0);
     const TexelStencil texels = bilinear_texels(uv, sizes.width_of(at), sizes.height_of(at));
     for (std::size_t t = 0; t < 4; ++t) {
-      rows.row[i + t] = &rows_[(first_texel_[at] + texels.index[t]) * row_];
+      rows.row[i + t] = &rows_[(first_texel_[at] + texels.index[t]) * places_.size];
       rows.weight[i + t] = texels.weight[t] * (i > 0 ? blend : 1 - blend);
     }
   }
@@ -177,51 +310,20 @@ SrbfRepresentation::Rows SrbfRepresentation::rows_around(Texcoord uv, float lod)
 }
 
 template <std::size_t K, Filtering filtering>
-Rgb SrbfRepresentation::decode(const Rows& rows, const Direction& light,
+Rgb SrbfRepresentation::decode(const Rows& rows, const Rows& next, const Direction& light,
                                const Direction& view) const {
-  Sums<Wide> wide;
-  Sums<Vec4> narrow;
-  constexpr std::size_t slots = slots_of(K, filtering);
-  constexpr std::size_t texels = filtering == Filtering::values ? 4 : 1;
-  const auto add_rows = [&](std::array<const float*, texels> slot,
-                            const std::array<Turn, texels>& turned, const float* weight) {
-    std::array<Psi, texels> psi;
-    for (std::size_t t = 0; t < texels; ++t) psi[t] = variables(turned[t], light, view);
-    for (std::size_t i = 0; i < wides_; ++i) {
-      add_kernels<K, texels, filtering>(slot, psi, weight, wide);
-      for (const float*& at : slot) at += wide_lanes * slots;
-    }
-    for (std::size_t i = 0; i < narrows_; ++i) {
-      add_kernels<K, texels, filtering>(slot, psi, weight, narrow);
-      for (const float*& at : slot) at += 4 * slots;
-    }
-  };
+  Sums<Wide> sums;
   if constexpr (filtering == Filtering::values) {
-    for (std::size_t i = 0; i < rows.count; i += texels) {
-      std::array<const float*, texels> row;
-      std::array<Turn, texels> turned;
-      for (std::size_t t = 0; t < texels; ++t) {
-        row[t] = rows.row[i + t];
-        const float* at = row[t] + angles_at_;
-        turned[t] = {load<Vec4>(at), load<Vec4>(at + 4)};
-      }
-      add_rows(row, turned, &rows.weight[i]);
-    }
+    for (std::size_t i = 0; i < rows.count; i += 4)
+      add_texels<K>(places_, &rows.row[i], &next.row[next.count == rows.count ? i : 0],
+                    &rows.weight[i], light, view, sums);
   } else {
-    alignas(64) std::array<float, longest_row> numbers;
-    for (std::size_t i = 0; i < row_; i += wide_lanes) {
-      Wide sum = load<Wide>(rows.row[0] + i) * rows.weight[0];
-      for (std::size_t t = 1; t < rows.count; ++t)
-        sum += load<Wide>(rows.row[t] + i) * rows.weight[t];
-      store(&numbers[i], sum);
-    }
-    constexpr float all = 1;
-    add_rows({numbers.data()}, {turn(load<Vec4>(&numbers[angles_at_]))}, &all);
+    add_blended<K>(places_, rows, next, light, view, sums);
   }
   Rgb result;
   const float gain = model_.quantity == Quantity::over_cosine ? light.z : 1;
   for (int c = 0; c < 3; ++c) {
-    const float value = (sum_of(wide.rgb[c]) + sum_of(narrow.rgb[c])) * gain;
+    const float value = sum_of(sums.rgb[c]) * gain;
     result[c] = value < 0 ? 0 : value;  // a NaN stays one
   }
   return result;
@@ -234,14 +336,6 @@ Rgb SrbfRepresentation::evaluate(Texcoord uv, Direction light, Direction view, f
   return answer;
 }
 
-void SrbfRepresentation::prefetch(const Rows& rows) const {
-  constexpr std::size_t line = 64 / sizeof(float);
-  for (std::size_t t = 0; t < rows.count; ++t) {
-    for (std::size_t i = 0; i < row_; i += line) __builtin_prefetch(rows.row[t] + i);
-  }
-}
-
-// The numbers of the next query are fetched while one is decoded.
 template <std::size_t K, Filtering filtering>
 void SrbfRepresentation::decode_all(std::span<const AppearanceQuery> queries,
                                     std::span<Rgb> answers) const {
@@ -251,11 +345,10 @@ void SrbfRepresentation::decode_all(std::span<const AppearanceQuery> queries,
     const Rows rows = next;
     if (i + 1 < queries.size()) {
       next = rows_around(queries[i + 1].uv, queries[i + 1].lod);
-      prefetch(next);
     }
     const AppearanceQuery& q = queries[i];
-    answers[i] =
-        q.light.z > 0 && q.view.z > 0 ? decode<K, filtering>(rows, q.light, q.view) : Rgb(0, 0, 0);
+    answers[i] = q.light.z > 0 && q.view.z > 0 ? decode<K, filtering>(rows, next, q.light, q.view)
+                                               : Rgb(0, 0, 0);
   }
 }
 

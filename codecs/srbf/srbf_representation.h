@@ -10,6 +10,22 @@
 
 namespace weft::srbf {
 
+/// How a decoder's texel lies in memory: [wide][slot][lane], [quad][slot][4], then the angles, or
+/// their cosines and sines where no numbers are blended.
+struct RowPlaces {
+  std::size_t wides;      ///< groups of as many kernels as the CPU has lanes
+  std::size_t narrows;    ///< and, of the rest, groups of four
+  std::size_t angles_at;  ///< the first of them
+  std::size_t size;       ///< numbers, a multiple of the lanes
+};
+
+/// The texels that a query blends, and how.
+struct Rows {
+  std::size_t count;  ///< 4, or 8 of two levels
+  std::array<const float*, 8> row;
+  std::array<float, 8> weight;
+};
+
 class SrbfRepresentation : public Representation {
  public:
   explicit SrbfRepresentation(Model model);
@@ -36,24 +52,19 @@ class SrbfRepresentation : public Representation {
  private:
   std::vector<std::byte> filtered_bytes() const;
   void fill_row(std::size_t texel);
-  struct Rows;
   Rows rows_around(Texcoord uv, float lod) const;
-  void prefetch(const Rows& rows) const;
   template <std::size_t K, Filtering filtering>
-  Rgb decode(const Rows& rows, const Direction& light, const Direction& view) const;
+  Rgb decode(const Rows& rows, const Rows& next, const Direction& light,
+             const Direction& view) const;
   template <std::size_t K, Filtering filtering>
   void decode_all(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
   template <std::size_t K>
   void decode_modes(std::span<const AppearanceQuery> queries, std::span<Rgb> answers) const;
 
   Model model_;
-  std::size_t wides_;      // groups of as many kernels as the CPU has lanes
-  std::size_t narrows_;    // and, of the rest, groups of four
-  std::size_t angles_at_;  // in a row
-  std::size_t row_;        // numbers of a texel, a multiple of the lanes
-  // [level][texel][row_], times scale: [wide][slot][lane], [quad][slot][4], then the angles, or
-  // their cosines and sines where no numbers are blended.
-  std::vector<float> rows_;
+  RowPlaces places_;
+  // [level][texel], times scale.
+  AlignedFloats rows_;
   std::vector<std::size_t> first_texel_;  // of each level
 };
 
