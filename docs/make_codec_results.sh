@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures what the codecs cost and lose, and remakes tables and figures of the papers that they come from: writes
-# docs/results/codecs.md, docs/results/factor_maps.md, docs/results/papers.md and the pictures in docs/images/papers/.
+# docs/results/codecs.md, docs/results/factor_maps.md, docs/results/bases.md, docs/results/papers.md and the pictures in docs/images/papers/.
 # Usage: docs/make_codec_results.sh [FOLDER]           measures all. Datasets and numbers go to FOLDER (default: codec_results);
 #                                                      datasets that are there are kept, numbers are measured again
 #        docs/make_codec_results.sh --continue [FOLDER]   the same, after an interruption: numbers that are there are kept
@@ -31,6 +31,17 @@ cmf_variants=(
 hf_variants=(
   "" "clustered=false" "clustered=false bits=float" "clustered=false lambda=auto" "clustered=false bits=float lambda=auto"
   "clustered=false floor=0.01")
+# Parameters of the codecs of linear bases, told side by side in docs/results/bases.md, on tissue.
+basis_codecs=(pca pca-view dfmf laplacian)
+pca=("" "bits=8" "bits=float" "components=4" "components=8" "components=32" "components=64")
+pca_view=("" "bits=8" "components=2" "components=8" "components=16")
+dfmf=(
+  "" "bits=8" "bits=float" "epsilon=0.001" "epsilon=0.1" "epsilon=1" "epsilon=10" "components_y=32"
+  "components_y=8 components_u=4 components_v=4")
+laplacian=(
+  "top=mean prediction=open" "top=mean prediction=open chroma_mean=cosine" "prediction=open" "top=mean" ""
+  "chroma_mean=cosine" "filters=box2" "filters=linear" "bits=half" "bits=8" "levels=1" "components_y=4"
+  "components_y=12" "components_y=16" "components_y=32" "directions=interpolated")
 declare -A scenes=([checker]=cube_checker [rings]=seashell_rings [tissue]=torus_tissue)
 
 say() { echo "$*" >&2; }
@@ -160,6 +171,27 @@ variants() {
   done
 }
 
+measure_bases() {
+  local codec i
+  local -a set
+  for codec in "${basis_codecs[@]}"; do
+    local -n parameters=${codec//-/_}
+    for i in "${!parameters[@]}"; do
+      read -ra set <<<"${parameters[i]}"
+      numbers "basis_${codec}_$i" tissue "$codec" "${set[@]}"
+    done
+  done
+}
+
+# {"CODEC": [PARAMETERS...], ...}
+basis_variants() {
+  local codec
+  for codec in "${basis_codecs[@]}"; do
+    local -n parameters=${codec//-/_}
+    jq -cn --arg codec "$codec" '{($codec): $ARGS.positional}' --args "${parameters[@]}"
+  done | jq -cs add
+}
+
 measure_bench() {
   [[ ! -f $work/bench.json ]] || return 0
   say "bench codecs"
@@ -174,6 +206,7 @@ if [[ $mode != write ]]; then
   measure_datasets
   measure_bench
   measure_laplacian
+  measure_bases
   measure_factorisations
   draw_factorisations
   measure_sizes
@@ -195,6 +228,8 @@ jq -r --arg machine "$machine" --arg spp "$spp" --argjson components "$(jq -cn '
 jq -r --arg machine "$machine" --arg spp "$spp" --argjson cmf "$(jq -cn '$ARGS.positional' --args "${cmf_variants[@]}")" \
   --argjson hf "$(jq -cn '$ARGS.positional' --args "${hf_variants[@]}")" \
   -f "$docs/factor_map_results.jq" "$work/papers.json" >"$docs/results/factor_maps.md"
+jq -r --arg machine "$machine" --arg spp "$spp" --argjson variants "$(basis_variants)" -f "$docs/basis_results.jq" \
+  "$work/papers.json" >"$docs/results/bases.md"
 for name in "${structures[@]}"; do
   for count in "${components[@]}"; do
     jq -r --arg name "$name" --arg count "$count" '.["figure6_\($name)_\($count)"].y
