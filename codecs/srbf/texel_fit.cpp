@@ -108,13 +108,17 @@ TexelFit TexelFitter::from_scratch(int starts, const DescentLimits& limits) {
   Kernels constant(shape_);
   std::ranges::copy(modes_.angles, constant.angles().begin());
   TexelFit best = as_it_is(std::move(constant));
-  for (int i = 0; i < starts + 1 && best.value.total > limits.enough; ++i) {
+  for (int i = 0; i < starts + 1 && !(best.value.total <= limits.enough); ++i) {
     Kernels guess = i < starts ? initial_guess(samples_, channels_, shape_, modes_.angles,
                                                static_cast<std::uint64_t>(i))
                                : guess_of_peaks();
     TexelFit end = descend(as_it_is(std::move(guess)), limits, false);
-    if (modes_.free) end = descend(end, limits, true);
-    if (is_finite(end) && end.value.total < best.value.total) best = std::move(end);
+    if (modes_.free) {
+      const bool fell_back = end.fell_back;
+      end = descend(end, limits, true);
+      end.fell_back = end.fell_back || fell_back;
+    }
+    if (is_finite(end) && !(best.value.total <= end.value.total)) best = std::move(end);
   }
   return best;
 }

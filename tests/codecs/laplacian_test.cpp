@@ -213,6 +213,8 @@ TEST_CASE("Laplacian: each option for a weak point lowers the error, at the same
   CHECK(around_model < 0.95 * paper);
   CHECK(closed < around_model);
   CHECK(error({"components_y=12"}) < 0.9 * closed);
+  CHECK(error({"top=mean", "prediction=open", "chroma_mean=cosine"}) < 0.995 * paper);
+  CHECK(error({"top=mean", "prediction=open", "filters=box2"}) < 0.98 * paper);
   CHECK(fit(btf, {})->bytes() == fit(btf, {"top=mean", "prediction=open"})->bytes());
 }
 
