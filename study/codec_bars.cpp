@@ -33,6 +33,7 @@ struct Limit {
   const char* unit;
   double (*value)(const CodecBench&);
   double limit;
+  bool at_least = false;
 };
 
 /// By how much the error of one variant is above that of another.
@@ -49,24 +50,34 @@ double fit_seconds(const CodecBench& bench) {
 double decode_ns(const CodecBench& bench) {
   return bench.decode.single;
 }
+double batched_ns(const CodecBench& bench) {
+  return bench.decode.batched;
+}
+double ratio(const CodecBench& bench) {
+  return bench.ratio;
+}
 
-constexpr std::array<Limit, 6> codec_limits{{
+constexpr std::array<Limit, 9> codec_limits{{
     {"laplacian", "laplacian: fit", "s", fit_seconds, 30},
     {"raw", "raw: decode", "ns", decode_ns, 150},
     {"cmf", "cmf: decode", "ns", decode_ns, 60},
     {"laplacian", "laplacian: decode", "ns", decode_ns, 150},
     {"lobes", "lobes: fit", "s", fit_seconds, 180},
     {"lobes", "lobes: decode", "ns", decode_ns, 80},
+    {"srbf", "srbf: fit", "s", fit_seconds, 900},
+    {"srbf", "srbf: decode, batched", "ns", batched_ns, 120},
+    {"srbf", "srbf: 24-bit input over texture bytes", "times", ratio, 30, true},
 }};
 constexpr std::array<Limit, 2> variant_limits{{
     {"cmf", "cmf: fit with clustering, dense directions", "s", fit_seconds, 20},
     {"hf", "hf: fit with clustering, dense directions", "s", fit_seconds, 60},
 }};
-constexpr std::array<Growth, 3> growths{{
+constexpr std::array<Growth, 4> growths{{
     {"cmf", "cmf float", "cmf: RMSE of 8 bits above floats, clustered", 5},
     {"cmf unclustered", "cmf unclustered float", "cmf: RMSE of 8 bits above floats, unclustered",
      5},
     {"cmf", "cmf unclustered", "cmf: RMSE of 256 clusters a factor above none", 12},
+    {"hf", "hf unclustered", "hf: RMSE of 256 clusters a factor above none", 12},
 }};
 constexpr double least_gain_of_batches = 2;
 constexpr double most_memory = 3;
@@ -76,7 +87,8 @@ void add_limits(std::span<const Limit> limits, const CodecBenches& benches,
   for (const Limit& limit : limits) {
     const auto found = benches.find(limit.name);
     if (found == benches.end()) continue;
-    bars.push_back({limit.what, limit.unit, limit.value(found->second), limit.limit});
+    bars.push_back(
+        {limit.what, limit.unit, limit.value(found->second), limit.limit, limit.at_least});
   }
 }
 
