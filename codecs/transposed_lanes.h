@@ -1,7 +1,6 @@
-// Numbers of sixteen queries, loaded four at a time and written side by side.
+// Four numbers of each of several things that lie side by side, as four vectors of one number of
+// all.
 #pragma once
-
-#ifdef __AVX512F__
 
 #include <array>
 #include <cstddef>
@@ -10,39 +9,46 @@
 
 namespace weft {
 
+/// a0 b0 a1 b1 of each quad.
+inline Wide low_pairs(const Wide& a, const Wide& b) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+#else
+  return __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+#endif
+}
+
+/// a2 b2 a3 b3 of each quad.
+inline Wide high_pairs(const Wide& a, const Wide& b) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+#else
+  return __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+#endif
+}
+
+/// Vector i of the result has in each quad number i of that quad of the four rows.
+[[gnu::always_inline]] inline std::array<Wide, 4> transposed(const std::array<Wide, 4>& row) {
+  const Wide even = low_pairs(row[0], row[2]);
+  const Wide odd = low_pairs(row[1], row[3]);
+  const Wide even_high = high_pairs(row[0], row[2]);
+  const Wide odd_high = high_pairs(row[1], row[3]);
+  return {low_pairs(even, odd), high_pairs(even, odd), low_pairs(even_high, odd_high),
+          high_pairs(even_high, odd_high)};
+}
+
+#ifdef __AVX512F__
 /// Four numbers of each of sixteen lanes, [number][lane]. Written number by number into memory,
 /// they would be read again side by side before they are in the cache.
 /// @param place  (lane) to where its four begin.
 template <typename Place>
-[[gnu::always_inline]] inline std::array<Vec16, 4> transposed(const Place& place) {
-  // Lane 4 j + k begins as quarter j of row k: the four rows are transposed within quarters.
-  const auto quarter = [&](std::size_t lane) {
-    __m128 four;
-    std::memcpy(&four, place(lane), sizeof four);
-    return four;
-  };
+[[gnu::always_inline]] inline std::array<Vec16, 4> lanes_at(const Place& place) {
+  // Lane 4 j + k begins as quad j of row k: rows are transposed within quads.
   const auto row = [&](std::size_t k) {
-    __m512 quarters = _mm512_maskz_broadcast_f32x4(0x000F, quarter(k));
-    quarters = _mm512_mask_broadcast_f32x4(quarters, 0x00F0, quarter(4 + k));
-    quarters = _mm512_mask_broadcast_f32x4(quarters, 0x0F00, quarter(8 + k));
-    return (Vec16)_mm512_mask_broadcast_f32x4(quarters, 0xF000, quarter(12 + k));
+    return quads_at(std::array{place(k), place(4 + k), place(8 + k), place(12 + k)});
   };
-  const std::array<Vec16, 4> rows{row(0), row(1), row(2), row(3)};
-  const auto low = [](const Vec16& a, const Vec16& b) {
-    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
-  };
-  const auto high = [](const Vec16& a, const Vec16& b) {
-    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15,
-                                   31);
-  };
-  // 0 0' 1 1' of rows 0 and 2, of rows 1 and 3, then of those two.
-  const Vec16 even = low(rows[0], rows[2]);
-  const Vec16 odd = low(rows[1], rows[3]);
-  const Vec16 even_high = high(rows[0], rows[2]);
-  const Vec16 odd_high = high(rows[1], rows[3]);
-  return {low(even, odd), high(even, odd), low(even_high, odd_high), high(even_high, odd_high)};
+  return transposed({row(0), row(1), row(2), row(3)});
 }
+#endif
 
 }  // namespace weft
-
-#endif

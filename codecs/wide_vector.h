@@ -6,6 +6,8 @@
 #include <immintrin.h>
 #endif
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -87,17 +89,43 @@ inline Vec16 joined(const Vec8& a, const Vec8& b) {
 #endif
 }
 
+/// As many floats side by side as the CPU has, and how many quads of them.
 #ifdef __AVX512F__
-/// Four quarters, loaded straight to where they belong.
-[[gnu::always_inline]] inline Vec16 joined_at(const float* a, const float* b, const float* c,
-                                              const float* d) {
-  const auto quarter = [](const float* p) { return (__m128)load<Vec4>(p); };
-  __m512 v = _mm512_maskz_broadcast_f32x4(0x000F, quarter(a));
-  v = _mm512_mask_broadcast_f32x4(v, 0x00F0, quarter(b));
-  v = _mm512_mask_broadcast_f32x4(v, 0x0F00, quarter(c));
-  return (Vec16)_mm512_mask_broadcast_f32x4(v, 0xF000, quarter(d));
-}
+using Wide = Vec16;
+#else
+using Wide = Vec8;
 #endif
+constexpr std::size_t wide_lanes = sizeof(Wide) / sizeof(float);
+constexpr std::size_t wide_quads = wide_lanes / 4;
+
+/// Quads from several places, loaded straight to where they belong.
+template <typename Value>
+[[gnu::always_inline]] inline Wide quads_at(const std::array<const Value*, wide_quads>& place) {
+  const auto quad = [](const Value* p) {
+    Vec4 v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+  };
+#ifdef __AVX512F__
+  __m512 v = _mm512_maskz_broadcast_f32x4(0x000F, (__m128)quad(place[0]));
+  v = _mm512_mask_broadcast_f32x4(v, 0x00F0, (__m128)quad(place[1]));
+  v = _mm512_mask_broadcast_f32x4(v, 0x0F00, (__m128)quad(place[2]));
+  return (Wide)_mm512_mask_broadcast_f32x4(v, 0xF000, (__m128)quad(place[3]));
+#else
+  return joined(quad(place[0]), quad(place[1]));
+#endif
+}
+
+/// Number k of each quad, four times.
+template <int k>
+inline Wide of_each_quad(const Wide& v) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(v, v, k, k, k, k, 4 + k, 4 + k, 4 + k, 4 + k, 8 + k, 8 + k, 8 + k,
+                                 8 + k, 12 + k, 12 + k, 12 + k, 12 + k);
+#else
+  return __builtin_shufflevector(v, v, k, k, k, k, 4 + k, 4 + k, 4 + k, 4 + k);
+#endif
+}
 
 inline float sum_of(const Vec4& v) {
   return (v[0] + v[2]) + (v[1] + v[3]);

@@ -43,9 +43,9 @@ void Decoder::add_level_of_pairs(const TexelBatch& texels,
   std::array<PairLanes, 4> lanes;
   for (std::size_t t = 0; t < 4; ++t) {
     const std::array<Vec16, 4> front =
-        transposed([&](std::size_t i) { return &texels_[texels.index[t][i]].scale_and_steps; });
+        lanes_at([&](std::size_t i) { return &texels_[texels.index[t][i]].scale_and_steps; });
     const std::array<Vec16, 4> maps =
-        transposed([&](std::size_t i) { return texels_[texels.index[t][i]].map.data(); });
+        lanes_at([&](std::size_t i) { return texels_[texels.index[t][i]].map.data(); });
     lanes[t].scale = RgbLanes{front[0], front[1], front[2]} * load<Vec16>(texels.weight[t].data());
     const UInt16 steps = __builtin_convertvector(front[3], UInt16);
     const Vec16 cosine = chosen(turn_back_cosine_, steps);

@@ -1,7 +1,5 @@
 #include "codecs/factor_maps/texel_pairs.h"
 
-#include <algorithm>
-
 namespace weft::factor_maps {
 
 std::vector<TexelPair> texel_pairs(std::span<const std::uint8_t> maps, int resolution) {

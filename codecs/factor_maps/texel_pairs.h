@@ -76,7 +76,7 @@ struct RgbLanes {
   using UInt16 = std::uint32_t __attribute__((vector_size(64)));
   using Int16 = std::int32_t __attribute__((vector_size(64)));
   const std::array<Vec16, 4> texels =
-      transposed([&](std::size_t lane) { return pairs + first[lane]; });
+      lanes_at([&](std::size_t lane) { return pairs + first[lane]; });
   const auto blended = [&](const auto& channel_of) {
     const auto channel = [&](std::size_t corner) {
       return __builtin_convertvector((Int16)channel_of((UInt16)texels[corner]), Vec16);

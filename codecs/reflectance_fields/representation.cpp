@@ -10,6 +10,7 @@
 
 #include "btf/raw_appearance.h"
 #include "codecs/branchless_exp.h"
+#include "codecs/transposed_lanes.h"
 #include "codecs/wide_vector.h"
 
 namespace weft::reflectance_fields {
@@ -18,17 +19,11 @@ namespace {
 
 // Fields side by side, of four texels and as many views as the CPU takes: a row is one texel, its
 // quads are those views'.
-#ifdef __AVX512F__
-using Wide = Vec16;
-#else
-using Wide = Vec8;
-#endif
-constexpr std::size_t wide = sizeof(Wide) / sizeof(float);
-constexpr std::size_t views_at_once = wide / 4;
+constexpr std::size_t views_at_once = wide_quads;
 using Rows = std::array<Wide, 4>;
 
 inline Wide power_of(Wide x, const Wide& n) {
-  for (std::size_t i = 0; i < wide; ++i) x[i] = branchless_power(x[i], n[i]);
+  for (std::size_t i = 0; i < wide_lanes; ++i) x[i] = branchless_power(x[i], n[i]);
   return x;
 }
 
@@ -39,12 +34,7 @@ inline Wide at_least_zero(Wide x) {
 // A quad of each of the views' fields. In registers: written one by one to memory, they could not
 // be read as one before all are there.
 inline Wide row_of(const std::array<const float*, views_at_once>& quads) {
-#ifdef __AVX512F__
-  return joined(joined(load<Vec4>(quads[0]), load<Vec4>(quads[1])),
-                joined(load<Vec4>(quads[2]), load<Vec4>(quads[3])));
-#else
-  return joined(load<Vec4>(quads[0]), load<Vec4>(quads[1]));
-#endif
+  return quads_at(quads);
 }
 
 inline Wide row_of(const std::array<const half*, views_at_once>& quads) {
@@ -59,38 +49,8 @@ inline Wide row_of(const std::array<const half*, views_at_once>& quads) {
 #endif
 #else
   Wide row;
-  for (std::size_t i = 0; i < wide; ++i) row[i] = quads[i / 4][i % 4];
+  for (std::size_t i = 0; i < wide_lanes; ++i) row[i] = quads[i / 4][i % 4];
   return row;
-#endif
-}
-
-// a0 b0 a1 b1 of each four.
-inline Wide low_pairs(Wide a, Wide b) {
-#ifdef __AVX512F__
-  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
-#else
-  return __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
-#endif
-}
-
-// a2 b2 a3 b3 of each four.
-inline Wide high_pairs(Wide a, Wide b) {
-#ifdef __AVX512F__
-  return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
-#else
-  return __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-#endif
-}
-
-// Number `Place` of each four, four times.
-template <int Place>
-Wide four_of(Wide a) {
-  constexpr int p = Place;
-#ifdef __AVX512F__
-  return __builtin_shufflevector(a, a, p, p, p, p, 4 + p, 4 + p, 4 + p, 4 + p, 8 + p, 8 + p, 8 + p,
-                                 8 + p, 12 + p, 12 + p, 12 + p, 12 + p);
-#else
-  return __builtin_shufflevector(a, a, p, p, p, p, 4 + p, 4 + p, 4 + p, 4 + p);
 #endif
 }
 
@@ -128,13 +88,9 @@ struct Quad {
   Wide x, y, z, w;
 };
 
-inline Quad transposed(const Rows& row) {
-  const Wide xy02 = low_pairs(row[0], row[2]);
-  const Wide xy13 = low_pairs(row[1], row[3]);
-  const Wide zw02 = high_pairs(row[0], row[2]);
-  const Wide zw13 = high_pairs(row[1], row[3]);
-  return {low_pairs(xy02, xy13), high_pairs(xy02, xy13), low_pairs(zw02, zw13),
-          high_pairs(zw02, zw13)};
+inline Quad quad_of(const Rows& rows) {
+  const std::array<Wide, 4> numbers = transposed(rows);
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 // Equation 1, |w| max(<w, l> / |w|, 0)^n = <w, l> ((<w, l> / |w|)^2)^((n - 1) / 2) where <w, l> is
@@ -225,7 +181,7 @@ template <std::size_t Lobes, typename Fields>
 [[gnu::always_inline]] inline Wide sum_of_lobes(const Fields& fields, std::size_t first,
                                                 const Direction& light) {
   Wide value{};
-  for (std::size_t k = 0; k < Lobes; ++k) value += lobe(transposed(fields.quad(first, k)), light);
+  for (std::size_t k = 0; k < Lobes; ++k) value += lobe(quad_of(fields.quad(first, k)), light);
   return value;
 }
 
@@ -249,15 +205,15 @@ template <typename Number>
     if (model_.kind == Kind::lobes) {
       value = sum_of_lobes(model_.lobes, fields, first, light);
     } else {
-      const Quad a = transposed(fields.quad(first, 0));
-      const Quad b = transposed(fields.quad(first, 1));
+      const Quad a = quad_of(fields.quad(first, 0));
+      const Quad b = quad_of(fields.quad(first, 1));
       value =
           at_least_zero(a.x * (x * x) + a.y * (y * y) + a.z * (x * y) + a.w * x + b.x * y + b.y);
     }
     value *= of_views(fields.view_weight, first) * of_texels(fields.texel_weight);
     const Rows colour = fields.quad(first, model_.quads() - 1);
-    sum += colour[0] * four_of<0>(value) + colour[1] * four_of<1>(value) +
-           colour[2] * four_of<2>(value) + colour[3] * four_of<3>(value);
+    sum += colour[0] * of_each_quad<0>(value) + colour[1] * of_each_quad<1>(value) +
+           colour[2] * of_each_quad<2>(value) + colour[3] * of_each_quad<3>(value);
   }
   return sum_of_quads(sum);
 }

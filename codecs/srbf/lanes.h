@@ -7,13 +7,6 @@
 
 namespace weft::srbf {
 
-#ifdef __AVX512F__
-using Wide = Vec16;
-#else
-using Wide = Vec8;
-#endif
-constexpr std::size_t wide_lanes = sizeof(Wide) / sizeof(float);
-
 template <typename Lanes>
 inline void store(float* p, const Lanes& v) {
   std::memcpy(p, &v, sizeof v);

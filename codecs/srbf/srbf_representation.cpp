@@ -54,26 +54,11 @@ template <typename Lanes>
   return psi;
 }
 
-// Some quads of `texels_a_wide` texels.
-constexpr std::size_t texels_a_wide = wide_lanes / 4;
-using TexelQuads = std::array<const float*, texels_a_wide>;
-[[gnu::always_inline]] inline Wide side_by_side(const TexelQuads& texels, std::size_t first) {
-#ifdef __AVX512F__
-  return joined_at(texels[0] + first, texels[1] + first, texels[2] + first, texels[3] + first);
-#else
-  return joined(load<Vec4>(texels[0] + first), load<Vec4>(texels[1] + first));
-#endif
-}
-
-// Number k of each quad, four times.
-template <int k>
-Wide of_each_quad(const Wide& v) {
-#ifdef __AVX512F__
-  return __builtin_shufflevector(v, v, k, k, k, k, 4 + k, 4 + k, 4 + k, 4 + k, 8 + k, 8 + k, 8 + k,
-                                 8 + k, 12 + k, 12 + k, 12 + k, 12 + k);
-#else
-  return __builtin_shufflevector(v, v, k, k, k, k, 4 + k, 4 + k, 4 + k, 4 + k);
-#endif
+// The same quad of as many texels as a vector holds.
+using TexelQuads = std::array<const float*, wide_quads>;
+[[gnu::always_inline]] inline Wide side_by_side(TexelQuads texels, std::size_t first) {
+  for (const float*& texel : texels) texel += first;
+  return quads_at(texels);
 }
 
 // Each of four numbers four times.
@@ -176,16 +161,15 @@ template <std::size_t K>
                                               const Direction& light, const Direction& view,
                                               Sums<Wide>& sums) {
   constexpr std::size_t slots = slots_of(K, Filtering::values);
-  constexpr std::size_t parts = 4 / texels_a_wide;
+  constexpr std::size_t parts = 4 / wide_quads;
   std::array<TexelQuads, parts> texels;
   std::array<Psi<Wide>, parts> psi;
   alignas(64) PsiNumbers numbers;
   for (std::size_t i = 0; i < parts; ++i) {
-    std::copy_n(row + i * texels_a_wide, texels_a_wide, texels[i].begin());
+    std::copy_n(row + i * wide_quads, wide_quads, texels[i].begin());
     psi[i] = variables(side_by_side(texels[i], places.angles_at),
                        side_by_side(texels[i], places.angles_at + 4), light, view);
-    for (std::size_t c = 0; c < 3; ++c)
-      store(&numbers[psi_place(i * texels_a_wide, 0, c)], psi[i][c]);
+    for (std::size_t c = 0; c < 3; ++c) store(&numbers[psi_place(i * wide_quads, 0, c)], psi[i][c]);
   }
   // The quads first: what was just written side by side would have to be waited for if it were read
   // number by number.
