@@ -92,7 +92,7 @@ std::vector<FactorMaps> Chain::factorise(const LaneVector& f) const {
     }
     half = half_link_->start(options_.order == Order::half_last ? residual(f, others) : f);
     for (int round = 0; options_.difference && round < half_rounds; ++round) {
-      half_link_->update(f, others, light_weights_, half);
+      half_link_->update(f, others, light_weights_, Sign::non_negative, half);
     }
     if (options_.order == Order::half_first) factors = light_and_view(f, half_link_->values(half));
     refine(f, factors, half);
@@ -121,14 +121,18 @@ LightView Chain::light_and_view(const LaneVector& f, const LaneVector& q) const 
 }
 
 // Lowers sum over pairs of w_light (f - product of links)^2: each link in turn with the other held.
-// But for the bound on growth no step raises it where terms are not below zero.
+// But for the bound on growth no step raises it where terms are not below zero. Of several terms of
+// any sign those over half and difference begin above zero, whose updates get further in as many
+// rounds, and as many rounds follow in which they may fall below it.
 void Chain::refine(const LaneVector& f, LightView& factors, HalfMaps& half) const {
   const Lanes start_light = largest(factors.light);
   const Lanes start_view = largest(factors.view);
   const Lanes start_half = largest(half.half);
   const Lanes start_difference = largest(half.difference);
-  for (int round = 0; round < options_.refine; ++round) {
-    half_link_->update(f, sum_of_terms(factors, n_lights_, n_views_), light_weights_, half);
+  const bool falls = options_.difference && options_.terms > 1 && options_.sign == Sign::any;
+  for (int round = 0; round < (falls ? 2 : 1) * options_.refine; ++round) {
+    half_link_->update(f, sum_of_terms(factors, n_lights_, n_views_), light_weights_,
+                       round < options_.refine ? Sign::non_negative : Sign::any, half);
     bound(start_half, half.half);
     bound(start_difference, half.difference);
     factors = weighted_low_rank(f, half_link_->values(half), light_weights_, options_.terms,

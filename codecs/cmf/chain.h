@@ -25,7 +25,7 @@ struct ChainOptions {
   bool half = true;                ///< with the factor over the half-vector, Q
   bool difference = false;         ///< with the factor over the difference, D; needs `half`
   int terms = 1;                   ///< of the links of two factors
-  Sign sign = Sign::non_negative;  ///< of the terms over light and view
+  Sign sign = Sign::non_negative;  ///< of several terms
   Order order = Order::half_first;
   int difference_rings = 8;  ///< of the grid that Q averages over: rings x 2 rings
   RankOne rank_one = RankOne::weighted;

@@ -45,7 +45,7 @@ void blur(int resolution, int stride, LaneVector& sums) {
   }
 }
 
-// X_t *= (L^T w G Y f)_t / (L^T w G^2 Y link)_t: L looks X up, G the other links, Y the other map.
+// Two sums over the pairs that ask for a texel: L^T top and L^T bottom, L being what looks it up.
 struct Update {
   LaneVector wanted;
   LaneVector present;
@@ -68,14 +68,46 @@ struct Update {
       }
     }
   }
-  void apply(Lanes* map) const {
+  void multiply(Lanes* map) const {
     for (std::size_t t = 0; t < wanted.size(); ++t) {
       for (int k = 0; k < lane_count; ++k) {
         if (present[t][k] > 0) map[t][k] *= wanted[t][k] / present[t][k];
       }
     }
   }
+  LaneVector ratio() const {
+    LaneVector result(wanted.size());
+    for (std::size_t t = 0; t < wanted.size(); ++t) {
+      for (int k = 0; k < lane_count; ++k) {
+        result[t][k] = present[t][k] > 0 ? wanted[t][k] / present[t][k] : 0.0F;
+      }
+    }
+    return result;
+  }
 };
+
+// How far to go along `step` for the least sum of w (left - slope L step)^2: sums in double.
+Lanes best_length(const LaneVector& step, const std::vector<BilinearTaps>& lookup,
+                  const LaneVector& left, const LaneVector& slope,
+                  std::span<const double> weights) {
+  factor_maps::DoubleLanes top;
+  factor_maps::DoubleLanes bottom;
+  const std::size_t pairs_a_light = left.size() / weights.size();
+  for (std::size_t pair = 0; pair < left.size(); ++pair) {
+    const Lanes along = looked_up(step.data(), lookup[pair]);
+    const double w = weights[pair / pairs_a_light];
+    for (int k = 0; k < lane_count; ++k) {
+      const double change = static_cast<double>(slope[pair][k]) * along[k];
+      top[k] += w * left[pair][k] * change;
+      bottom[k] += w * change * change;
+    }
+  }
+  Lanes length;
+  for (int k = 0; k < lane_count; ++k) {
+    length[k] = bottom[k] > 0 ? static_cast<float>(top[k] / bottom[k]) : 0.0F;
+  }
+  return length;
+}
 
 // None where each texel of the disc is one of some pair's four.
 int spread_passes(std::size_t pairs, const factor_maps::ParabolicMap& map) {
@@ -122,6 +154,14 @@ HalfMaps HalfLink::start(const LaneVector& f) const {
 }
 
 LaneVector HalfLink::values(const HalfMaps& maps) const {
+  LaneVector values = signed_sum(maps);
+  for (Lanes& value : values) {
+    for (int k = 0; k < lane_count; ++k) value[k] = std::max(value[k], 0.0F);
+  }
+  return values;
+}
+
+LaneVector HalfLink::signed_sum(const HalfMaps& maps) const {
   if (!with_difference_) return factor_maps::looked_up(maps.half, half_lookup_);
   LaneVector values(half_lookup_.size());
   const auto texels = static_cast<std::size_t>(map_.texels());
@@ -136,33 +176,51 @@ LaneVector HalfLink::values(const HalfMaps& maps) const {
 }
 
 void HalfLink::update(const LaneVector& f, const LaneVector& others,
-                      std::span<const double> light_weights, HalfMaps& maps) const {
-  const std::size_t n_views = f.size() / light_weights.size();
-  const auto texels = static_cast<std::size_t>(map_.texels());
+                      std::span<const double> light_weights, Sign sign, HalfMaps& maps) const {
   for (int of_half = 1; of_half >= (with_difference_ ? 0 : 1); --of_half) {
-    LaneVector& solved = of_half != 0 ? maps.half : maps.difference;
-    const LaneVector& held = of_half != 0 ? maps.difference : maps.half;
-    const auto& lookup = of_half != 0 ? half_lookup_ : difference_lookup_;
-    const auto& held_lookup = of_half != 0 ? difference_lookup_ : half_lookup_;
-    const LaneVector link = values(maps);
     for (int term = 0; term < (with_difference_ ? terms_ : 1); ++term) {
-      Update update(texels);
-      for (std::size_t pair = 0; pair < f.size(); ++pair) {
-        const auto w = static_cast<float>(light_weights[pair / n_views]);
-        const Lanes y =
-            with_difference_ ? looked_up(&held[term * texels], held_lookup[pair]) : ones();
-        Lanes top;
-        Lanes bottom;
-        for (int k = 0; k < lane_count; ++k) {
-          const float weighted = w * others[pair][k] * y[k];
-          top[k] = weighted * f[pair][k];
-          bottom[k] = weighted * others[pair][k] * link[pair][k];
-        }
-        update.add(lookup[pair], top, bottom);
-      }
-      update.spread(map_.resolution(), spread_);
-      update.apply(&solved[term * texels]);
+      update_map(f, others, light_weights, sign, of_half != 0, term, maps);
     }
+  }
+}
+
+void HalfLink::update_map(const LaneVector& f, const LaneVector& others,
+                          std::span<const double> light_weights, Sign sign, bool of_half, int term,
+                          HalfMaps& maps) const {
+  const std::size_t first = static_cast<std::size_t>(term) * map_.texels();
+  const LaneVector& held = of_half ? maps.difference : maps.half;
+  const auto& lookup = of_half ? half_lookup_ : difference_lookup_;
+  const auto& held_lookup = of_half ? difference_lookup_ : half_lookup_;
+  Lanes* solved = of_half ? &maps.half[first] : &maps.difference[first];
+  const std::size_t n_views = f.size() / light_weights.size();
+  LaneVector left = signed_sum(maps);
+  LaneVector slopes(f.size());
+  Update update(map_.texels());
+  const bool any = sign == Sign::any;
+  for (std::size_t pair = 0; pair < f.size(); ++pair) {
+    const auto w = static_cast<float>(light_weights[pair / n_views]);
+    const Lanes y = with_difference_ ? looked_up(&held[first], held_lookup[pair]) : ones();
+    Lanes top;
+    Lanes bottom;
+    for (int k = 0; k < lane_count; ++k) {
+      const float slope = others[pair][k] * y[k];
+      const float is = others[pair][k] * left[pair][k];
+      slopes[pair][k] = slope;
+      left[pair][k] = f[pair][k] - is;
+      top[k] = w * slope * (any ? left[pair][k] : f[pair][k]);
+      bottom[k] = w * slope * (any ? slope : is);
+    }
+    update.add(lookup[pair], top, bottom);
+  }
+  update.spread(map_.resolution(), spread_);
+  if (!any) {
+    update.multiply(solved);
+    return;
+  }
+  const LaneVector step = update.ratio();
+  const Lanes length = best_length(step, lookup, left, slopes, light_weights);
+  for (std::size_t t = 0; t < step.size(); ++t) {
+    for (int k = 0; k < lane_count; ++k) solved[t][k] += length[k] * step[t][k];
   }
 }
 

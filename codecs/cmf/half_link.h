@@ -6,15 +6,13 @@
 #include <vector>
 
 #include "btf/hemisphere_sampling.h"
+#include "codecs/cmf/low_rank.h"
 #include "codecs/factor_maps/half_difference.h"
 #include "codecs/factor_maps/parabolic_map.h"
 
 namespace weft::cmf {
 
-using factor_maps::Lanes;
-using factor_maps::LaneVector;
-
-/// Maps [term][texel], all >= 0; `difference` is empty where there is none.
+/// Maps [term][texel], all >= 0 but for signed ones; `difference` is empty where there is none.
 struct HalfMaps {
   LaneVector half;
   LaneVector difference;
@@ -32,18 +30,26 @@ class HalfLink {
   /// @param f  [light][view], finite and >= 0.
   HalfMaps start(const LaneVector& f) const;
 
-  /// The link's value at each [light][view] pair.
+  /// The link's value at each [light][view] pair, raised to 0 where it is less.
   LaneVector values(const HalfMaps& maps) const;
 
-  /// One round that lowers sum over pairs of w_light (f - others * link)^2 by the multiplicative
-  /// updates of Lee and Seung, Q's texels and then D's, which keep them >= 0. Where there are fewer
-  /// pairs than the map has texels for, updates are spread over neighbours, and the sum may rise.
+  /// One round that lowers sum over pairs of w_light (f - others * link)^2, Q's texels and then
+  /// D's: by the multiplicative updates of Lee and Seung, which keep them >= 0; or, signed, along
+  /// the gradient that each texel's curvature scales, to the least of the sum. Where there are
+  /// fewer pairs than the map has texels for, updates are spread over neighbours, and of the first
+  /// kind may raise the sum.
   /// @param others         the product of the other links at each pair, >= 0.
   /// @param light_weights  w_light, > 0, one a light.
+  /// @param sign           non-negative of maps that are.
   void update(const LaneVector& f, const LaneVector& others, std::span<const double> light_weights,
-              HalfMaps& maps) const;
+              Sign sign, HalfMaps& maps) const;
 
  private:
+  LaneVector signed_sum(const HalfMaps& maps) const;
+  void update_map(const LaneVector& f, const LaneVector& others,
+                  std::span<const double> light_weights, Sign sign, bool of_half, int term,
+                  HalfMaps& maps) const;
+
   int terms_;
   bool with_difference_;
   factor_maps::ParabolicMap map_;

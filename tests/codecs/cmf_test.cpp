@@ -229,6 +229,60 @@ TEST_CASE("The factor over the difference takes what depends on it") {
   CHECK(two_terms < 1.1 * with);
 }
 
+// Zero where one product takes away more than the other gives: no two products above zero follow
+// that.
+TEST_CASE(
+    "Signed terms over half and difference never raise the error, and take away where it helps") {
+  const HemisphereSampling directions(named_directions("fibonacci:100"));
+  const factor_maps::ParabolicMap map(12);
+  cmf::LaneVector f;
+  for (const Direction& light : directions.directions()) {
+    for (const Direction& view : directions.directions()) {
+      const Direction half = (light + view).normalized();
+      const float grazing = 1 - (light ^ half);
+      cmf::Lanes value;
+      for (int k = 0; k < cmf::lane_count; ++k) {
+        value[k] = 1 + half.x - 3 * grazing * (0.5F + 0.1F * static_cast<float>(k % 3) - half.x);
+        value[k] = std::max(value[k], 0.0F);
+      }
+      f.push_back(value);
+    }
+  }
+  cmf::Lanes one;
+  std::fill_n(one.lane, cmf::lane_count, 1.0F);
+  const cmf::LaneVector others(f.size(), one);
+  const std::vector<double> weights(directions.size(), 1.0);
+  const auto fitted = [&](cmf::Sign sign) {
+    const cmf::HalfLink link(directions, directions, map, 8, true, 2);
+    const auto error = [&](const cmf::HalfMaps& maps) {
+      const cmf::LaneVector values = link.values(maps);
+      double sum = 0;
+      for (std::size_t pair = 0; pair < f.size(); ++pair) {
+        const double difference = f[pair][0] - values[pair][0];
+        sum += difference * difference;
+      }
+      return sum;
+    };
+    cmf::HalfMaps maps = link.start(f);
+    double before = error(maps);
+    for (int round = 0; round < 60; ++round) {
+      link.update(f, others, weights, sign, maps);
+      const double now = error(maps);
+      CHECK(now <= before * (1 + 1e-5));
+      before = now;
+    }
+    float least = 0;
+    for (const cmf::Lanes& texel : maps.difference) least = std::min(least, texel[0]);
+    for (const cmf::Lanes& texel : maps.half) least = std::min(least, texel[0]);
+    CHECK((least < 0) == (sign == cmf::Sign::any));
+    return before;
+  };
+  const double above_zero = fitted(cmf::Sign::non_negative);
+  const double with_any_sign = fitted(cmf::Sign::any);
+  INFO("above zero " << above_zero << ", any sign " << with_any_sign);
+  CHECK(with_any_sign < 0.7 * above_zero);
+}
+
 TEST_CASE("Either order of the chain explains the data, and refined they end alike", "[heavy]") {
   const auto btf = realistic_btf(4, "ubo81");
   const auto error = [&](const std::string& order, const std::string& rounds) {
@@ -328,7 +382,7 @@ TEST_CASE("With few pairs, refining moves what lies between them too") {
   };
   cmf::HalfMaps maps = link.start(constant(1, 18 * 18));
   const std::vector<double> weights(18, 1.0);
-  link.update(constant(5, 18 * 18), constant(1, 18 * 18), weights, maps);
+  link.update(constant(5, 18 * 18), constant(1, 18 * 18), weights, cmf::Sign::non_negative, maps);
   for (int i = 0; i < 500; ++i) {
     const auto turn = [&](double step) { return std::fmod(step * i, 1.0); };
     const Direction l = from_spherical(1.2 * turn(0.414), 2 * std::numbers::pi * turn(0.303));
