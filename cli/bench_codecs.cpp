@@ -95,8 +95,15 @@ Json json_of(const CodecBench& b) {
                {"bytes", b.bytes},
                {"constant_bytes", b.constant_bytes},
                {"ratio", b.ratio},
-               {"fit_memory", nullptr}};
+               {"fit_memory", nullptr},
+               {"levels", Json::array()}};
   if (b.fit_memory) json["fit_memory"] = *b.fit_memory;
+  for (const LevelBench& level : b.levels) {
+    json["levels"].push_back({{"lod", level.lod},
+                              {"decode_ns", level.decode.single},
+                              {"decode_batched_ns", level.decode.batched},
+                              {"relative_rmse", level.relative_rmse}});
+  }
   return json;
 }
 
@@ -195,7 +202,8 @@ void add_bench_codecs(CLI::App& bench, Session& session) {
       "codecs",
       "Fit every codec with its defaults to one dataset, and measure the fit (seconds, memory over "
       "that of the raw data), decoding on one thread (ns a query, one by one and batched: median "
-      "of 301 passes over 1,024 fixed queries), error at the samples and bytes; then CMF and HF by "
+      "of 301 passes over 1,024 fixed queries), error at the samples and bytes, and with --json "
+      "each level of detail's times and error between the samples; then CMF and HF by "
       "their parameters, on directions as dense as their paper's. Datasets are traced once and "
       "kept in $XDG_CACHE_HOME/weft or ~/.cache/weft");
   codecs

@@ -6,7 +6,10 @@ def data: "\(.texels[0]) x \(.texels[1]) texels, \(.views) views x \(.lights) li
 def cells: [(.fit_seconds | to(2)), (.fit_memory | if . then to(2) else "?" end), (.decode_ns | to(1)), (.decode_batched_ns | to(1)),
   (100 * .relative_rmse | to(2)), .bytes, (.ratio | to(1))];
 def head: ["fit, s", "memory of the fit", "decode, ns", "batched, ns", "relative RMSE, %", "bytes", "ratio"];
+def lods: [0, 0.5, 1, 2, 4];
+def level_cells: [lods[] as $lod | ([.levels[] | select(.lod == $lod)][0] | if . then (100 * .relative_rmse | to(1)), (.decode_batched_ns | to(1)) else "", "" end)];
 
+lods as $lods |
 "# The codecs, measured",
 "",
 "Made by `docs/make_codec_results.sh` from `weft bench codecs --json`: tissue, \($spp) spp, 8 bounces; \($machine).",
@@ -25,7 +28,22 @@ def head: ["fit, s", "memory of the fit", "decode, ns", "batched, ns", "relative
 rule(7),
 (.codecs | to_entries[] | ["`\(.key)`"] + (.value | cells) | row),
 "",
-"## CMF and HF on directions as dense as their paper's",
+"## Levels of detail",
+"",
+"Relative RMSE in % against the data at the same level, over 16,384 queries of any place and direction, so that what lies between the samples counts; beside it nanoseconds a query, batched.",
+"",
+($lods | ["codec"] + map("lod \(.)", "ns") | row),
+rule(2 * ($lods | length)),
+(.codecs | to_entries[] | ["`\(.key)`"] + (.value | level_cells) | row),
+"",
+(.variant_dataset | data),
+"",
+($lods | ["", "parameters"] + map("lod \(.)", "ns") | row),
+"|---" + rule(2 * ($lods | length)),
+(.variants | to_entries[] | select(.key | test("^(cmf|hf|laplacian)( unclustered float| interpolated)?$"))
+  | [.key, (.value.parameters | map("`\(.)`") | join(" "))] + (.value | level_cells) | row),
+"",
+"## By parameters, on directions as dense as paper 004's",
 "",
 (.variant_dataset | data),
 "",

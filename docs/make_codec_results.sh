@@ -27,7 +27,11 @@ cmf_paper=(rank_one=plain refine=0 refit_scale=false levels=false rotate=false w
 cmf_variants=(
   "" "rotate=false" "refine_codebooks=0" "rotate=false refine_codebooks=0" "refine_codebooks=8" "clustering=tree"
   "metric=cosine" "clustered=false" "clustered=false rotate=true" "clustered=false bits=float" "clustered=false refine=0"
-  "clustered=false refine=0 rank_one=plain" "clustered=false terms=2" "clustered=false factors=light,half,difference,view")
+  "clustered=false refine=0 rank_one=plain" "clustered=false terms=2" "clustered=false factors=light,half,difference,view"
+  "order=half-last" "clustered=false order=half-last" "clustered=false order=half-last refine=0" "refit_scale=false"
+  "clustered=false refit_scale=false" "clustered=false bits=float terms=2"
+  "clustered=false factors=light,half,difference,view terms=2"
+  "clustered=false bits=float factors=light,half,difference,view terms=2")
 hf_variants=(
   "" "clustered=false" "clustered=false bits=float" "clustered=false lambda=auto" "clustered=false bits=float lambda=auto"
   "clustered=false floor=0.01")

@@ -5,7 +5,7 @@
 namespace weft {
 
 std::span<const CodecVariant> factor_variants() {
-  static const std::array<CodecVariant, 14> variants{{
+  static const std::array<CodecVariant, 16> variants{{
       {"cmf", "cmf", {}},
       {"cmf float", "cmf", {"bits=float"}},
       {"cmf not turned", "cmf", {"rotate=false"}},
@@ -20,6 +20,8 @@ std::span<const CodecVariant> factor_variants() {
       {"hf lambda 0.01 float", "hf", {"clustered=false", "bits=float", "lambda=0.01"}},
       {"hf lambda auto", "hf", {"clustered=false", "lambda=auto"}},
       {"hf lambda auto float", "hf", {"clustered=false", "bits=float", "lambda=auto"}},
+      {"laplacian", "laplacian", {}},
+      {"laplacian interpolated", "laplacian", {"directions=interpolated"}},
   }};
   return variants;
 }

@@ -32,10 +32,51 @@ void use(const Rgb& value) {
   asm volatile("" : : "g"(&value) : "memory");
 }
 
+std::vector<Rgb> answers_of(const Appearance& appearance,
+                            std::span<const AppearanceQuery> queries) {
+  std::vector<Rgb> answers(queries.size());
+  appearance.evaluate(queries, answers);
+  return answers;
+}
+
+double relative_difference(std::span<const Rgb> wanted, std::span<const Rgb> found) {
+  double error = 0;
+  double square = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const double difference = static_cast<double>(found[i][c]) - wanted[i][c];
+      error += difference * difference;
+      square += static_cast<double>(wanted[i][c]) * wanted[i][c];
+    }
+  }
+  return square > 0 ? std::sqrt(error / square) : std::sqrt(error);
+}
+
+std::vector<float> lods_of(const Appearance& appearance) {
+  std::vector<float> lods{0};
+  if (!appearance.has_lod()) return lods;
+  const int side = std::max(appearance.texels().x, appearance.texels().y);
+  if (side > 1) lods.push_back(0.5F);
+  for (float lod = 1; std::exp2(lod) <= static_cast<float>(side); ++lod) lods.push_back(lod);
+  return lods;
+}
+
+std::vector<LevelBench> bench_levels(const Appearance& fitted, const Appearance& raw) {
+  constexpr std::size_t compared = 16384;
+  std::vector<LevelBench> levels;
+  for (const float lod : lods_of(fitted)) {
+    const std::vector<AppearanceQuery> queries = decode_queries(compared, lod);
+    levels.push_back({.lod = lod,
+                      .decode = decode_times(fitted, decode_queries(1024, lod)),
+                      .relative_rmse = relative_difference(answers_of(raw, queries),
+                                                           answers_of(fitted, queries))});
+  }
+  return levels;
+}
+
 }  // namespace
 
-std::vector<AppearanceQuery> decode_queries() {
-  constexpr std::uint64_t count = 1024;
+std::vector<AppearanceQuery> decode_queries(std::size_t count, float lod) {
   std::vector<AppearanceQuery> queries;
   for (std::uint64_t i = 0; i < count; ++i) {
     const auto number = [i](int dimension) { return unit_float(hash_coordinates(i, dimension)); };
@@ -43,7 +84,7 @@ std::vector<AppearanceQuery> decode_queries() {
       const double z = 1 - number(dimension);  // in (0, 1]
       return from_spherical(std::acos(z), 2 * std::numbers::pi * number(dimension + 1));
     };
-    queries.push_back({Texcoord(number(0), number(1)), direction(2), direction(4), 0});
+    queries.push_back({Texcoord(number(0), number(1)), direction(2), direction(4), lod});
   }
   return queries;
 }
@@ -81,7 +122,8 @@ CodecBench bench_codec(const Codec& codec, const std::vector<std::string>& param
   if (const auto growth = memory.growth())
     bench.fit_memory = 1 + static_cast<double>(*growth) / static_cast<double>(btf->bytes());
   progress.finish();
-  bench.decode = decode_times(*fitted, decode_queries());
+  bench.levels = bench_levels(*fitted, *codec_named("raw").fit(btf, Settings(), progress));
+  bench.decode = bench.levels.front().decode;
   const SampleError error = sample_error(*btf, *fitted);
   bench.rmse = error.rmse;
   bench.relative_rmse = error.relative_rmse;

@@ -21,14 +21,21 @@ struct DecodeTimes {
   double batched = 0;  ///< one `evaluate` of all of them
 };
 
-/// 1,024 queries of level 0, the same each time (hashes): places even over the tile, lights and
-/// views even over the solid angle of the hemisphere, none of them on the horizon.
-std::vector<AppearanceQuery> decode_queries();
+/// Queries of one level of detail, the same each time (hashes): places even over the tile, lights
+/// and views even over the solid angle of the hemisphere, none of them on the horizon.
+std::vector<AppearanceQuery> decode_queries(std::size_t count = 1024, float lod = 0);
 
 /// The time of a pass over `queries` over their number; of 301 passes each way, taken in turn after
 /// one that is not counted, the median.
 /// @param queries  at least one.
 DecodeTimes decode_times(const Appearance& appearance, std::span<const AppearanceQuery> queries);
+
+/// What a level of detail costs and loses between the samples, too.
+struct LevelBench {
+  float lod = 0;
+  DecodeTimes decode;
+  double relative_rmse = 0;  ///< over 16,384 queries, against the raw BTF's answers at the same lod
+};
 
 struct CodecBench {
   double fit_seconds = 0;  ///< of the wall, all threads
@@ -42,6 +49,8 @@ struct CodecBench {
   /// data counted in, over the raw data's bytes. 1: nothing but the raw data. Nothing where the
   /// system does not tell.
   std::optional<double> fit_memory;
+  /// Of lod 0, 0.5, 1, 2, ... to the coarsest; one where the codec has no levels.
+  std::vector<LevelBench> levels;
 };
 
 /// @param parameters  "KEY=VALUE", as `compress --set`.

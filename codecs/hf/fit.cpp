@@ -16,6 +16,7 @@
 
 namespace weft::hf {
 
+using factor_maps::BilinearTaps;
 using factor_maps::FittedFactors;
 using factor_maps::lane_count;
 using factor_maps::Lanes;
@@ -79,11 +80,13 @@ DoubleVector logarithms(const LaneVector& f, double floor) {
   return result;
 }
 
+// Of the map over the half-vector.
+constexpr int half_corrections = 4;
+
 class Solver {
  public:
   Solver(const HemisphereSampling& lights, const HemisphereSampling& views, int resolution)
       : lookup_(lights, views, ParabolicMap(resolution)),
-        touched_(lookup_.touched()),
         light_map_(lights, ParabolicMap(resolution)),
         view_map_(views, ParabolicMap(resolution)) {}
 
@@ -109,41 +112,70 @@ class Solver {
   }
 
  private:
-  // Beyond the touched texels the Laplacian extrapolates, and exp makes that a power: they are cut
-  // to the largest of those, or they would take all the steps of 8 bits.
+  // The logarithm was filtered in the fit, the map is when it is decoded. Of a texel that few
+  // samples ask for, and with a small weight, the logarithm may be large, and exp makes that a
+  // power: all are cut to the largest that any sample looks up, or one would take all the steps of
+  // 8 bits and swamp its neighbours. Then the map is changed so that its own lookup returns what
+  // was fitted.
   LaneVector exponential(const DoubleVector& x, int factor, DoubleLanes& shift) const {
     const std::size_t first = factor * lookup_.map_texels();
+    const std::vector<BilinearTaps>& taps = taps_of(factor);
+    DoubleVector sampled(taps.size());
     DoubleLanes largest;
     std::fill_n(largest.lane, lane_count, -std::numeric_limits<double>::infinity());
-    for (std::size_t t = first; t < first + lookup_.map_texels(); ++t) {
-      for (int k = 0; touched_[t] && k < lane_count; ++k)
-        largest[k] = std::max(largest[k], x[t][k]);
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      for (std::size_t t = 0; t < 4; ++t) {
+        for (int k = 0; k < lane_count; ++k)
+          sampled[i][k] += taps[i].weight[t] * x[first + taps[i].index[t]][k];
+      }
+      for (int k = 0; k < lane_count; ++k) largest[k] = std::max(largest[k], sampled[i][k]);
     }
     LaneVector map(lookup_.map_texels());
     for (std::size_t t = 0; t < map.size(); ++t) {
       for (int k = 0; k < lane_count; ++k)
         map[t][k] = static_cast<float>(std::exp(std::min(x[first + t][k] - largest[k], 0.0)));
     }
-    for (int k = 0; k < lane_count; ++k) shift[k] += largest[k];
-    if (factor == 1) return map;
-    // The logarithm was filtered in the fit, the map is when it is decoded: over light and view the
-    // map is changed so that its own lookup returns what was fitted.
-    const SampleMap& maker = factor == 0 ? light_map_ : view_map_;
-    LaneVector samples(maker.taps().size());
+    LaneVector samples(taps.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      DoubleLanes sum;
-      for (std::size_t t = 0; t < 4; ++t) {
-        for (int k = 0; k < lane_count; ++k)
-          sum[k] += maker.taps()[i].weight[t] * x[first + maker.taps()[i].index[t]][k];
-      }
       for (int k = 0; k < lane_count; ++k)
-        samples[i][k] = static_cast<float>(std::exp(sum[k] - largest[k]));
+        samples[i][k] = static_cast<float>(std::exp(sampled[i][k] - largest[k]));
     }
+    for (int k = 0; k < lane_count; ++k) shift[k] += largest[k];
+    if (factor == 1) {
+      for (int round = 0; round < half_corrections; ++round) correct(taps, samples, map);
+      return map;
+    }
+    const SampleMap& maker = factor == 0 ? light_map_ : view_map_;
     return maker.corrected(std::move(map), samples);
   }
 
+  const std::vector<BilinearTaps>& taps_of(int factor) const {
+    return factor == 0 ? light_map_.taps() : factor == 1 ? lookup_.half() : view_map_.taps();
+  }
+
+  // One multiplicative update (Lee and Seung) of the map towards the samples: half-vectors are too
+  // many for their equations to be solved.
+  static void correct(const std::vector<BilinearTaps>& taps, const LaneVector& samples,
+                      LaneVector& map) {
+    LaneVector wanted(map.size());
+    LaneVector present(map.size());
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      Lanes value;
+      for (std::size_t t = 0; t < 4; ++t)
+        factor_maps::add_scaled(value, taps[i].weight[t], map[taps[i].index[t]]);
+      for (std::size_t t = 0; t < 4; ++t) {
+        factor_maps::add_scaled(wanted[taps[i].index[t]], taps[i].weight[t], samples[i]);
+        factor_maps::add_scaled(present[taps[i].index[t]], taps[i].weight[t], value);
+      }
+    }
+    for (std::size_t t = 0; t < map.size(); ++t) {
+      for (int k = 0; k < lane_count; ++k) {
+        if (present[t][k] > 0) map[t][k] *= wanted[t][k] / present[t][k];
+      }
+    }
+  }
+
   LogLookup lookup_;
-  std::vector<bool> touched_;
   SampleMap light_map_;
   SampleMap view_map_;
 };

@@ -134,19 +134,6 @@ DoubleVector LogLookup::transposed_times(const DoubleVector& f) const {
   return result;
 }
 
-std::vector<bool> LogLookup::touched() const {
-  std::vector<bool> result(unknowns());
-  for (std::size_t pair = 0; pair < pairs(); ++pair) {
-    for (int f = 0; f < factor_count; ++f) {
-      const BilinearTaps& own = taps(pair, f);
-      for (std::size_t t = 0; t < 4; ++t) {
-        if (own.weight[t] > 0) result[f * map_texels_ + own.index[t]] = true;
-      }
-    }
-  }
-  return result;
-}
-
 LogSystem::LogSystem(const LogLookup& lookup, int resolution, double lambda) {
   const Matrix smooth = laplacian(resolution, lookup.unknowns());
   const auto n = static_cast<Eigen::Index>(lookup.unknowns());

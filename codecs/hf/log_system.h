@@ -38,8 +38,8 @@ class LogLookup {
 
   DoubleVector times(const DoubleVector& x) const;             ///< M x
   DoubleVector transposed_times(const DoubleVector& f) const;  ///< M^T f
-  /// Whether any pair asks for a texel, [factor][row][column].
-  std::vector<bool> touched() const;
+  /// The texels that each pair's half-vector asks for, within its map.
+  const std::vector<factor_maps::BilinearTaps>& half() const { return half_; }
 
  private:
   std::size_t map_texels_;

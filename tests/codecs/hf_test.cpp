@@ -141,6 +141,50 @@ TEST_CASE("The factored system is solved in every lane") {
   }
 }
 
+TEST_CASE(
+    "The ridge shares a constant evenly between the factors, which nothing else would settle") {
+  const HemisphereSampling directions(named_directions("ubo81"));
+  constexpr int resolution = 9;
+  const LogLookup lookup(directions, directions, ParabolicMap(resolution));
+  const LogSystem system(lookup, resolution, 0.5);
+  DoubleVector ones(lookup.pairs());
+  for (DoubleLanes& value : ones) {
+    for (int k = 0; k < lane_count; ++k) value[k] = 3.0 / static_cast<double>(lookup.pairs());
+  }
+  const DoubleVector x = system.solve(lookup.transposed_times(ones));
+  for (const DoubleLanes& texel : x) REQUIRE(texel[7] == Approx(1).margin(0.01));
+}
+
+TEST_CASE("What is black is lifted to the floor, a share of the ABRDF's mean") {
+  // Black where the light comes from one side: there the product is the floor over what is bright.
+  const auto btf =
+      synthetic_btf(1, 1, "ubo81", "ubo81", [](int, int, const Direction& l, const Direction&) {
+        return l.x < 0 ? Rgb(0, 0, 0) : Rgb(1, 2, 4);
+      });
+  const auto lifted = [&](const std::string& floor) {
+    Progress progress;
+    const auto parameters = Settings::from_text(
+        "", "test",
+        {"bits=float", "clustered=false", "lambda=0.001", "refit_scale=false", "floor=" + floor});
+    const auto fitted = codec_named("hf").fit(btf, parameters, progress);
+    double sum = 0;
+    int count = 0;
+    for (const Direction& light : btf->lights().directions()) {
+      if (light.x > -0.3F || light.z < 0.1F) continue;
+      sum += fitted->evaluate({0.5F, 0.5F}, light, {0, 0, 1}, 0).x / light.z;
+      ++count;
+    }
+    return sum / count;
+  };
+  double mean = 0;
+  for (const Direction& light : btf->lights().directions()) mean += light.x < 0 ? 0 : 1;
+  mean /= static_cast<double>(btf->lights().size());
+  for (const double floor : {0.01, 0.1}) {
+    INFO(floor);
+    CHECK(lifted(std::to_string(floor)) == Approx(floor * mean).epsilon(0.2));
+  }
+}
+
 TEST_CASE("Cross validation smooths noise, and leaves clean data alone") {
   const HemisphereSampling lights(named_directions("ubo81"));
   constexpr int resolution = 16;
@@ -186,6 +230,20 @@ TEST_CASE("What the Laplacian extrapolates does not take the steps of 8 bits") {
   INFO("floats " << in_floats << ", bytes " << in_bytes);
   CHECK(in_floats < 0.01);
   CHECK(in_bytes < 0.02);
+}
+
+// A texel that few samples ask for, with small weights, takes a logarithm that exp makes a power of.
+TEST_CASE("A small lambda does not let texels that few samples ask for swamp their neighbours") {
+  const auto btf = realistic_btf(4, "ubo81");
+  for (const std::string bits : {"float", "8"}) {
+    const auto error = [&](const std::string& lambda) {
+      return hf_error(btf, {"levels=false", "clustered=false", "bits=" + bits, "lambda=" + lambda});
+    };
+    const double smooth = error("1");
+    const double steep = error("0.01");
+    INFO(bits << ": lambda 1 " << smooth << ", 0.01 " << steep);
+    CHECK(steep < 1.1 * smooth);
+  }
 }
 
 TEST_CASE(

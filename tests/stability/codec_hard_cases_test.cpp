@@ -247,6 +247,37 @@ TEST_CASE("Every codec bears lights and views at theta 90 degrees") {
   }
 }
 
+// What a measurement may say though no light falls on the tile: worth nothing, and no reason to err
+// elsewhere.
+TEST_CASE("Every codec bears light that comes from lights on the horizon") {
+  std::vector<Direction> lights = named_directions("regular:3x6");
+  const std::size_t above = lights.size();
+  for (const double phi : {0.0, 90.0, 180.0, 270.0})
+    lights.emplace_back(std::cos(radians(phi)), std::sin(radians(phi)), 0.F);
+  Btf btf = btf_of(3, 3, lights, named_directions("regular:3x6"), constant);
+  for (std::size_t v = 0; v < btf.views().size(); ++v) {
+    for (std::size_t l = above; l < lights.size(); ++l) {
+      for (int t = 0; t < 9; ++t) btf.set(l, v, t % 3, t / 3, Rgb(0.02F, 0.01F, 0.04F));
+    }
+  }
+  for (const Codec& codec : codecs()) {
+    INFO(codec.name);
+    const auto representation = fitted(codec, btf);
+    check_answers(*representation, 4);
+    double error = 0;
+    double square = 0;
+    for (std::size_t v = 0; v < btf.views().size(); ++v) {
+      for (std::size_t l = 0; l < above; ++l) {
+        const Rgb wanted = btf.at(l, v, 1, 1);
+        const Rgb found = representation->evaluate({0.5F, 0.5F}, lights[l], btf.views()[v], 0);
+        error += (found - wanted).length2();
+        square += wanted.length2();
+      }
+    }
+    CHECK(std::sqrt(error / square) <= 0.05);
+  }
+}
+
 TEST_CASE("Every codec refuses NaN, infinity and negative values, naming view, light and texel") {
   const Btf whole =
       btf_of(3, 2, named_directions("regular:3x6"), named_directions("regular:3x6"), constant);

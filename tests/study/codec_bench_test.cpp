@@ -100,7 +100,32 @@ TEST_CASE("The bench tells of every codec what its representation tells") {
     CHECK(bench.decode.batched > 0);
     CHECK(bench.relative_rmse < 0.1);
     if (bench.fit_memory) CHECK(*bench.fit_memory >= 1);
+    REQUIRE(bench.levels.size() == (fitted->has_lod() ? 5 : 1));  // 0, 0.5, 1, 2, 3 of 8 x 4 texels
+    CHECK(bench.levels.back().lod == (fitted->has_lod() ? 3 : 0));
+    for (const weft::LevelBench& level : bench.levels) {
+      INFO("lod " << level.lod << ": " << level.relative_rmse);
+      CHECK(level.decode.batched > 0);
+      if (codec.name == "raw") CHECK(level.relative_rmse == 0);
+    }
   }
+}
+
+TEST_CASE("A level of detail's error is against the data at that level") {
+  // Two columns of texels, one twice as bright: what has no level but the finest errs at the other.
+  const weft::HemisphereSampling sampling(weft::named_directions("fibonacci:12"));
+  auto btf = std::make_shared<weft::Btf>(2, 2, sampling, sampling, weft::PixelType::float32);
+  for (std::size_t v = 0; v < 12; ++v) {
+    for (std::size_t l = 0; l < 12; ++l) {
+      for (int t = 0; t < 4; ++t)
+        btf->set(l, v, t % 2, t / 2, weft::Rgb(1, 1, 1) * sampling[l].z * (1.0F + t % 2));
+    }
+  }
+  weft::Progress silent;
+  const CodecBench bench =
+      weft::bench_codec(weft::codec_named("laplacian"), {"levels=1"}, btf, silent);
+  REQUIRE(bench.levels.size() == 3);
+  INFO("level 0: " << bench.levels[0].relative_rmse << ", 1: " << bench.levels[2].relative_rmse);
+  CHECK(bench.levels[2].relative_rmse > 2 * bench.levels[0].relative_rmse);
 }
 
 TEST_CASE("Parameters of a bench reach the codec") {
