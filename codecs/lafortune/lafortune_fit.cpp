@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstring>
 
 #include "codecs/branchless_double.h"
 #include "codecs/normal_sums.h"
@@ -14,7 +14,6 @@ namespace {
 using Vec = DoubleLanes;
 
 constexpr std::size_t lanes = PairTable::lanes;
-constexpr int a_lobe = 4;  // parameters: three of the axis, whose length is the peak, and log n
 
 // (axis . m)^n at eight pairs, 0 where the product is not positive.
 struct LobeLanes {
@@ -35,11 +34,20 @@ LobeLanes lobe_lanes(const PairTable& pairs, std::size_t i, const Lobe& lobe) {
   return {product > least_product ? power : Vec{}, log_product, held};
 }
 
+Vec value_lanes(const PairTable& pairs, std::size_t i, const Lafortune& model) {
+  Vec value = Vec{} + model.diffuse;
+  for (int k = 0; k < model.count; ++k)
+    value += lobe_lanes(pairs, i, model.lobe[k]).power * model.lobe[k].peak;
+  return load_lanes(pairs.cosine() + i) * value;
+}
+
+}  // namespace
+
 template <int K>
-NormalEquations<a_lobe * K + 1> normal_equations(const PairTable& pairs,
-                                                 std::span<const double> values,
-                                                 const Lafortune& model) {
-  constexpr int n = a_lobe * K + 1;
+NormalEquations<parameters_a_lobe * K + 1> normal_equations(const PairTable& pairs,
+                                                            std::span<const double> values,
+                                                            const Lafortune& model) {
+  constexpr int n = parameters_a_lobe * K + 1;
   NormalSums<n> sums;
   for (std::size_t i = 0; i < pairs.padded(); i += lanes) {
     const Vec cosine = load_lanes(pairs.cosine() + i);
@@ -52,10 +60,10 @@ NormalEquations<a_lobe * K + 1> normal_equations(const PairTable& pairs,
       const Vec height = cosine * lane.power * lobe.peak;
       const Vec slope = height * lobe.exponent;
       const Vec turn = slope / lane.product;
-      row[a_lobe * k] = turn * load_lanes(pairs.x() + i);
-      row[a_lobe * k + 1] = turn * load_lanes(pairs.y() + i);
-      row[a_lobe * k + 2] = turn * load_lanes(pairs.z() + i);
-      row[a_lobe * k + 3] = slope * lane.log_product;
+      row[parameters_a_lobe * k] = turn * load_lanes(pairs.x() + i);
+      row[parameters_a_lobe * k + 1] = turn * load_lanes(pairs.y() + i);
+      row[parameters_a_lobe * k + 2] = turn * load_lanes(pairs.z() + i);
+      row[parameters_a_lobe * k + 3] = slope * lane.log_product;
       residual -= height;
     }
     sums.add(row, residual);
@@ -63,18 +71,20 @@ NormalEquations<a_lobe * K + 1> normal_equations(const PairTable& pairs,
   return sums.sums();
 }
 
+namespace {
+
 template <int K>
-std::array<bool, a_lobe * K + 1> free_parameters(const NormalEquations<a_lobe * K + 1>& normal,
-                                                 const Lafortune& model) {
-  constexpr int diffuse = a_lobe * K;
-  std::array<bool, a_lobe * K + 1> free;
+std::array<bool, parameters_a_lobe * K + 1> free_parameters(
+    const NormalEquations<parameters_a_lobe * K + 1>& normal, const Lafortune& model) {
+  constexpr int diffuse = parameters_a_lobe * K;
+  std::array<bool, parameters_a_lobe * K + 1> free;
   free.fill(true);
   for (int k = 0; k < K; ++k) {
-    const double narrower = normal.right[a_lobe * k + 3];
+    const double narrower = normal.right[parameters_a_lobe * k + 3];
     const double exponent = model.lobe[k].exponent;
     if ((exponent <= least_exponent && narrower <= 0) ||
         (exponent >= largest_exponent && narrower >= 0))
-      free[a_lobe * k + 3] = false;
+      free[parameters_a_lobe * k + 3] = false;
   }
   if ((model.diffuse <= 0 && normal.right[diffuse] <= 0) ||
       (model.diffuse >= largest_peak && normal.right[diffuse] >= 0))
@@ -99,20 +109,40 @@ void move_lobe(Lobe& lobe, const double* step) {
                              least_exponent, largest_exponent);
 }
 
+}  // namespace
+
 template <int K>
-Lafortune moved(const Lafortune& model, const std::array<double, a_lobe * K + 1>& step) {
+Lafortune stepped(const Lafortune& model,
+                  const std::array<double, parameters_a_lobe * K + 1>& step) {
   Lafortune next = model;
-  for (int k = 0; k < K; ++k) move_lobe(next.lobe[k], &step[a_lobe * k]);
-  next.diffuse = std::clamp(model.diffuse + step[a_lobe * K], 0.0, largest_peak);
+  for (int k = 0; k < K; ++k) move_lobe(next.lobe[k], &step[parameters_a_lobe * k]);
+  next.diffuse = std::clamp(model.diffuse + step[parameters_a_lobe * K], 0.0, largest_peak);
   return next;
 }
+
+template NormalEquations<parameters_a_lobe + 1> normal_equations<1>(const PairTable&,
+                                                                    std::span<const double>,
+                                                                    const Lafortune&);
+template NormalEquations<parameters_a_lobe * 2 + 1> normal_equations<2>(const PairTable&,
+                                                                        std::span<const double>,
+                                                                        const Lafortune&);
+template NormalEquations<parameters_a_lobe * 3 + 1> normal_equations<3>(const PairTable&,
+                                                                        std::span<const double>,
+                                                                        const Lafortune&);
+template Lafortune stepped<1>(const Lafortune&, const std::array<double, parameters_a_lobe + 1>&);
+template Lafortune stepped<2>(const Lafortune&,
+                              const std::array<double, parameters_a_lobe * 2 + 1>&);
+template Lafortune stepped<3>(const Lafortune&,
+                              const std::array<double, parameters_a_lobe * 3 + 1>&);
+
+namespace {
 
 template <int K>
 double improve_model(const PairTable& pairs, std::span<const double> values,
                      const FitLimits& limits, Lafortune& model) {
-  return levenberg_marquardt<a_lobe * K + 1>(
+  return levenberg_marquardt<parameters_a_lobe * K + 1>(
       limits, model, [&](const Lafortune& at) { return normal_equations<K>(pairs, values, at); },
-      free_parameters<K>, moved<K>);
+      free_parameters<K>, stepped<K>);
 }
 
 struct Shape {
@@ -149,14 +179,18 @@ PairTable::PairTable(const HemisphereSampling& views, const HemisphereSampling& 
   cosine_.resize(padded);
 }
 
+void evaluate(const PairTable& pairs, const Lafortune& model, std::span<double> values) {
+  for (std::size_t i = 0; i < pairs.padded(); i += lanes) {
+    const Vec value = value_lanes(pairs, i, model);
+    std::memcpy(&values[i], &value, sizeof value);
+  }
+}
+
 double squared_error(const PairTable& pairs, std::span<const double> values,
                      const Lafortune& model) {
   Vec error{};
   for (std::size_t i = 0; i < pairs.padded(); i += lanes) {
-    Vec value = Vec{} + model.diffuse;
-    for (int k = 0; k < model.count; ++k)
-      value += lobe_lanes(pairs, i, model.lobe[k]).power * model.lobe[k].peak;
-    const Vec residual = load_lanes(&values[i]) - load_lanes(pairs.cosine() + i) * value;
+    const Vec residual = load_lanes(&values[i]) - value_lanes(pairs, i, model);
     error += residual * residual;
   }
   return sum_of(error);
@@ -185,7 +219,9 @@ void fit_heights(const PairTable& pairs, std::span<const double> values, Lafortu
     for (std::size_t k = 0; k < count; ++k) {
       double sum = right[k];
       for (std::size_t j = 0; j < count; ++j) sum -= j == k ? 0 : matrix[k][j] * height[j];
-      height[k] = matrix[k][k] > 1e-12 ? std::clamp(sum / matrix[k][k], 0.0, largest_peak) : 0;
+      // Else no pair is near the lobe, or a value is no number.
+      const bool is_told = matrix[k][k] > 1e-12 && std::isfinite(sum);
+      height[k] = is_told ? std::clamp(sum / matrix[k][k], 0.0, largest_peak) : 0;
     }
   }
   for (int k = 0; k < model.count; ++k) model.lobe[k].peak = height[k];
@@ -220,7 +256,7 @@ TexelFit fit_texel(const PairTable& pairs, std::span<const double> values, int c
     fit_heights(pairs, values, model);
     for (int k = 0; k < count; ++k) model.lobe[k].peak = std::max(model.lobe[k].peak, 1e-3);
     const double error = improve(pairs, values, first, model);
-    if (!(error <= best.error)) continue;  // a NaN is no fit
+    if (!(error <= best.error) || std::isinf(error)) continue;  // a NaN is no fit
     best = {model, error, false};
   }
   if (!best.fell_back) best.error = improve(pairs, values, last, best.model);

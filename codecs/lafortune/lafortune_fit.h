@@ -27,6 +27,10 @@ struct Lobe {
   double exponent = 1;
 };
 
+/// What the fit moves of a lobe, in this order: its axis, whose length is the peak (a change of
+/// 1 + s is one of (1 + s)^n); the logarithm of its exponent. The diffuse term comes last.
+inline constexpr int parameters_a_lobe = 4;
+
 /// value(l, v) = cos(theta_light) (diffuse + sum of peak max(axis . m, 0)^exponent).
 struct Lafortune {
   int count = 1;
@@ -57,10 +61,29 @@ class PairTable {
   std::vector<double> cosine_;
 };
 
+/// The model's value at each pair, `padded()` of them, 0 beyond `size()`.
+void evaluate(const PairTable& pairs, const Lafortune& model, std::span<double> values);
+
+/// Sum of squared differences.
 double squared_error(const PairTable& pairs, std::span<const double> values,
                      const Lafortune& model);
 
-/// The diffuse term and peaks that fit best for the given axes and exponents, within their bounds.
+/// J^T J, J^T r and |r|^2 of the K = `model.count` lobes' parameters and the diffuse term, J the
+/// derivatives of the model's values. K is 1 to `most_lobes`.
+/// @param values  `padded()` of them, 0 beyond `size()`.
+template <int K>
+NormalEquations<parameters_a_lobe * K + 1> normal_equations(const PairTable& pairs,
+                                                            std::span<const double> values,
+                                                            const Lafortune& model);
+
+/// Where a step of the parameters leads: cut to what the derivatives tell something about, peaks,
+/// exponents and the diffuse term held within their bounds.
+template <int K>
+Lafortune stepped(const Lafortune& model,
+                  const std::array<double, parameters_a_lobe * K + 1>& step);
+
+/// The diffuse term and peaks that fit best for the given axes and exponents, within their bounds;
+/// 0 where values are not finite.
 void fit_heights(const PairTable& pairs, std::span<const double> values, Lafortune& model);
 
 /// Improves `model` until it gains no more. @return its squared error.

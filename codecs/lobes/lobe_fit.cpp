@@ -14,8 +14,6 @@ namespace {
 
 using Vec = DoubleLanes;
 
-constexpr int a_lobe = 4;  // parameters: two of the axis, peak, log of the exponent
-
 constexpr std::size_t lanes = LightTable::lanes;
 
 using Vec3d = std::array<double, 3>;
@@ -57,10 +55,13 @@ LobeLanes lobe_lanes(const LightTable& lights, std::size_t i, const Lobe& lobe) 
   return {cosine > least_cosine ? power : Vec{}, log_cosine, held};
 }
 
+}  // namespace
+
 template <int K>
-NormalEquations<a_lobe * K> normal_equations(const LightTable& lights,
-                                             std::span<const double> values, const LobeSum& lobes) {
-  constexpr int n = a_lobe * K;
+NormalEquations<parameters_a_lobe * K> normal_equations(const LightTable& lights,
+                                                        std::span<const double> values,
+                                                        const LobeSum& lobes) {
+  constexpr int n = parameters_a_lobe * K;
   NormalSums<n> sums;
   std::array<std::array<Vec3d, 2>, K> frame;
   for (int k = 0; k < K; ++k) frame[k] = tangents(lobes.lobe[k].axis);
@@ -72,10 +73,10 @@ NormalEquations<a_lobe * K> normal_equations(const LightTable& lights,
       const LobeLanes lane = lobe_lanes(lights, i, lobe);
       const Vec slope = lane.power * (lobe.peak * lobe.exponent);
       const Vec turn = slope / lane.cosine;
-      row[a_lobe * k] = turn * dot(lights, i, frame[k][0]);
-      row[a_lobe * k + 1] = turn * dot(lights, i, frame[k][1]);
-      row[a_lobe * k + 2] = lane.power;
-      row[a_lobe * k + 3] = slope * lane.log_cosine;
+      row[parameters_a_lobe * k] = turn * dot(lights, i, frame[k][0]);
+      row[parameters_a_lobe * k + 1] = turn * dot(lights, i, frame[k][1]);
+      row[parameters_a_lobe * k + 2] = lane.power;
+      row[parameters_a_lobe * k + 3] = slope * lane.log_cosine;
       residual -= lane.power * lobe.peak;
     }
     sums.add(row, residual);
@@ -83,21 +84,23 @@ NormalEquations<a_lobe * K> normal_equations(const LightTable& lights,
   return sums.sums();
 }
 
+namespace {
+
 // A parameter at its bound that the gradient pushes beyond.
 template <int K>
-std::array<bool, a_lobe * K> free_parameters(const NormalEquations<a_lobe * K>& normal,
-                                             const LobeSum& lobes) {
-  std::array<bool, a_lobe * K> free;
+std::array<bool, parameters_a_lobe * K> free_parameters(
+    const NormalEquations<parameters_a_lobe * K>& normal, const LobeSum& lobes) {
+  std::array<bool, parameters_a_lobe * K> free;
   free.fill(true);
   for (int k = 0; k < K; ++k) {
     const Lobe& lobe = lobes.lobe[k];
-    const double up = normal.right[a_lobe * k + 2];
-    const double wider = normal.right[a_lobe * k + 3];
+    const double up = normal.right[parameters_a_lobe * k + 2];
+    const double wider = normal.right[parameters_a_lobe * k + 3];
     if ((lobe.peak <= 0 && up <= 0) || (lobe.peak >= largest_peak && up >= 0))
-      free[a_lobe * k + 2] = false;
+      free[parameters_a_lobe * k + 2] = false;
     if ((lobe.exponent <= least_exponent && wider <= 0) ||
         (lobe.exponent >= largest_exponent && wider >= 0))
-      free[a_lobe * k + 3] = false;
+      free[parameters_a_lobe * k + 3] = false;
   }
   return free;
 }
@@ -106,12 +109,14 @@ std::array<bool, a_lobe * K> free_parameters(const NormalEquations<a_lobe * K>& 
 constexpr double longest_turn = 0.5;      // radians
 constexpr double largest_log_step = 1.0;  // of the exponent
 
+}  // namespace
+
 template <int K>
-LobeSum stepped(const LobeSum& lobes, const std::array<double, a_lobe * K>& step) {
+LobeSum stepped(const LobeSum& lobes, const std::array<double, parameters_a_lobe * K>& step) {
   LobeSum next = lobes;
   for (int k = 0; k < K; ++k) {
     Lobe& lobe = next.lobe[k];
-    const double* s = &step[a_lobe * k];
+    const double* s = &step[parameters_a_lobe * k];
     const auto frame = tangents(lobe.axis);
     const double turn = std::hypot(s[0], s[1]);
     const double scale = turn > longest_turn ? longest_turn / turn : 1;
@@ -127,10 +132,29 @@ LobeSum stepped(const LobeSum& lobes, const std::array<double, a_lobe * K>& step
   return next;
 }
 
+template NormalEquations<parameters_a_lobe> normal_equations<1>(const LightTable&,
+                                                                std::span<const double>,
+                                                                const LobeSum&);
+template NormalEquations<parameters_a_lobe * 2> normal_equations<2>(const LightTable&,
+                                                                    std::span<const double>,
+                                                                    const LobeSum&);
+template NormalEquations<parameters_a_lobe * 3> normal_equations<3>(const LightTable&,
+                                                                    std::span<const double>,
+                                                                    const LobeSum&);
+template NormalEquations<parameters_a_lobe * 4> normal_equations<4>(const LightTable&,
+                                                                    std::span<const double>,
+                                                                    const LobeSum&);
+template LobeSum stepped<1>(const LobeSum&, const std::array<double, parameters_a_lobe>&);
+template LobeSum stepped<2>(const LobeSum&, const std::array<double, parameters_a_lobe * 2>&);
+template LobeSum stepped<3>(const LobeSum&, const std::array<double, parameters_a_lobe * 3>&);
+template LobeSum stepped<4>(const LobeSum&, const std::array<double, parameters_a_lobe * 4>&);
+
+namespace {
+
 template <int K>
 double improve_sum(const LightTable& lights, std::span<const double> values,
                    const FitLimits& limits, LobeSum& lobes) {
-  return levenberg_marquardt<a_lobe * K>(
+  return levenberg_marquardt<parameters_a_lobe * K>(
       limits, lobes, [&](const LobeSum& at) { return normal_equations<K>(lights, values, at); },
       free_parameters<K>, stepped<K>);
 }
@@ -219,8 +243,9 @@ void fit_peaks(const LightTable& lights, std::span<const double> values, LobeSum
       for (int j = 0; j < lobes.count; ++j) {
         if (j != k) sum -= matrix[k][j] * lobes.lobe[j].peak;
       }
-      const bool is_seen = matrix[k][k] > 1e-12;  // else no light is near its axis
-      lobes.lobe[k].peak = is_seen ? std::clamp(sum / matrix[k][k], 0.0, largest_peak) : 0;
+      // Else no light is near its axis, or a value is no number.
+      const bool is_told = matrix[k][k] > 1e-12 && std::isfinite(sum);
+      lobes.lobe[k].peak = is_told ? std::clamp(sum / matrix[k][k], 0.0, largest_peak) : 0;
     }
   }
 }

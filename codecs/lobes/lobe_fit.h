@@ -34,6 +34,10 @@ struct Lobe {
   bool operator==(const Lobe&) const = default;
 };
 
+/// What the fit moves of a lobe, in this order: two turns of its axis in radians, about two
+/// tangents; its peak; the logarithm of its exponent.
+inline constexpr int parameters_a_lobe = 4;
+
 /// The first `count` are used.
 struct LobeSum {
   int count = 1;
@@ -76,13 +80,27 @@ void evaluate(const LightTable& lights, const LobeSum& lobes, std::span<double> 
 double squared_error(const LightTable& lights, std::span<const double> values,
                      const LobeSum& lobes);
 
+/// J^T J, J^T r and |r|^2 of the K = `lobes.count` lobes' parameters, J the derivatives of the
+/// sum's values. K is 1 to `most_lobes`.
+/// @param values  `padded()` of them, 0 beyond `size()`.
+template <int K>
+NormalEquations<parameters_a_lobe * K> normal_equations(const LightTable& lights,
+                                                        std::span<const double> values,
+                                                        const LobeSum& lobes);
+
+/// Where a step of the parameters leads: turns and the change of an exponent cut to what the
+/// derivatives tell something about, peak and exponent held within their bounds.
+template <int K>
+LobeSum stepped(const LobeSum& lobes, const std::array<double, parameters_a_lobe * K>& step);
+
 /// Improves `lobes` until it gains no more; each step keeps peak and exponent within their bounds.
 /// @param values  `padded()` of them, 0 beyond `size()`; the largest is 1.
 /// @return its squared error, never more than the start's.
 double improve(const LightTable& lights, std::span<const double> values, const FitLimits& limits,
                LobeSum& lobes);
 
-/// The peaks that fit best for the given axes and exponents, each within its bounds.
+/// The peaks that fit best for the given axes and exponents, each within its bounds; 0 where values
+/// are not finite.
 void fit_peaks(const LightTable& lights, std::span<const double> values, LobeSum& lobes);
 
 }  // namespace weft::lobes
