@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "btf/error.h"
 #include "btf/vector.h"
@@ -63,6 +64,13 @@ float stored_value(Storage storage, float value) {
       break;
   }
   return value;
+}
+
+float colour_scale(float largest) {
+  if (!std::isfinite(largest))
+    throw bad_input("BTF", "its values are so large that their fit is beyond a float's range");
+  constexpr float held = 8192;
+  return largest > 0 ? std::max(largest / held, std::numeric_limits<float>::min()) : 1;
 }
 
 GlTexture stored_texture(std::string name, Storage storage, const std::vector<float>& values) {

@@ -23,6 +23,12 @@ std::size_t bytes_a_value(Storage storage);
 /// Rounds to what the storage holds: 8 bits are (byte - 128) / 127.
 float stored_value(Storage storage, float value);
 
+/// What a texture's colours are divided by, so that the largest is 8,192: then halfs hold sums of
+/// them up to seven times as large. 1 where all are 0; never less than a float holds in full.
+/// @param largest  of the colours' absolute values.
+/// @throws Error   bad_input where that is not finite.
+float colour_scale(float largest);
+
 /// A texture buffer of four values a texel.
 /// @param values  stored ones, a multiple of four.
 GlTexture stored_texture(std::string name, Storage storage, const std::vector<float>& values);

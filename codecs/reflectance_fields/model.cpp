@@ -32,14 +32,13 @@ Model empty_model(const Btf& btf, const std::string& codec, Kind kind, std::size
 }
 
 void store_fields(Model& model) {
-  constexpr float held = 8192;  // times four lobes of 1.2 it is still a half
   const std::size_t stride = model.floats_a_field();
   const std::size_t first = is_rgb(model.kind) ? 0 : stride - 4;
   float largest = 0;
   for (std::size_t i = 0; i < model.fields.size(); ++i) {
     if (i % stride >= first) largest = std::max(largest, std::abs(model.fields[i]));
   }
-  model.scale = largest > 0 ? largest / held : 1;
+  model.scale = colour_scale(largest);  // times four lobes of 1.2, 8,192 is still a half
   for (std::size_t i = 0; i < model.fields.size(); ++i) {
     const float by = i % stride >= first ? model.scale : 1;
     model.fields[i] = stored_value(model.storage, model.fields[i] / by);

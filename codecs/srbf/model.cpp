@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "btf/error.h"
+
 namespace weft::srbf {
 
 namespace {
@@ -41,6 +43,8 @@ void Model::set_kernels(const std::vector<Kernels>& kernels, double colour_scale
     float& largest = scale[i % row()];
     largest = std::max(largest, std::abs(values[i]));
   }
+  if (!std::ranges::all_of(scale, [](float s) { return std::isfinite(s); }))
+    throw bad_input("BTF", "its values are so large that their fit is beyond a float's range");
   for (std::size_t i = 0; i < values.size(); ++i) {
     const float largest = scale[i % row()];
     values[i] = largest > 0 ? stored_value(storage, values[i] / largest) : 0;
