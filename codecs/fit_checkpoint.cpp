@@ -110,6 +110,7 @@ std::optional<std::vector<double>> FitCheckpoint::find(const std::string& name,
   std::memcpy(values.data(), text.data() + checksum_size, count * sizeof(double));
   if (checksum(std::as_bytes(std::span(values))) != text.substr(0, checksum_size))
     return std::nullopt;
+  ++found_;
   return values;
 }
 

@@ -43,9 +43,13 @@ class FitCheckpoint {
   /// The piece as it was kept; none where it is not there, damaged, or has not `count` values.
   std::optional<std::vector<double>> find(const std::string& name, std::size_t count) const;
 
+  /// How many pieces were found so far: what an earlier run had done.
+  std::size_t found() const { return found_; }
+
  private:
   std::filesystem::path folder_;
   std::string key_;
+  mutable std::size_t found_ = 0;
 };
 
 /// Removes a checkpoint's folder, where there is one, when the fit's result is on disk.

@@ -1,12 +1,14 @@
 #include "codecs/lafortune/fit.h"
 
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "codecs/fit_checkpoint.h"
 #include "codecs/lafortune/lafortune_fit.h"
 #include "codecs/luminance.h"
 #include "codecs/sample_check.h"
@@ -20,6 +22,7 @@ namespace {
 struct TexelSamples {
   std::vector<double> luminance;  // padded
   std::array<double, 3> colour{};
+  double largest = 0;  // B / cos(theta_light), 1/sr
   bool is_black = true;
 };
 
@@ -44,6 +47,7 @@ TexelSamples read_texel(const Btf& btf, const PairTable& pairs, std::size_t texe
   }
   if (!(sum > 0)) return samples;
   samples.is_black = false;
+  samples.largest = largest;
   for (double& luminance : samples.luminance) luminance /= largest;
   for (double& c : samples.colour) c *= largest / sum;
   return samples;
@@ -62,7 +66,6 @@ void write_texel(const Lafortune& fitted, const TexelSamples& samples, float* nu
 
 // As for reflectance fields: halfs hold all that a decoder computes.
 void store_texels(Model& model) {
-  constexpr float held = 8192;
   const std::size_t stride = 4 * model.quads();
   const auto is_colour = [&](std::size_t i) {
     return i % stride >= stride - 4 && i % stride < stride - 1;
@@ -71,11 +74,78 @@ void store_texels(Model& model) {
   for (std::size_t i = 0; i < model.texels.size(); ++i) {
     if (is_colour(i)) largest = std::max(largest, model.texels[i]);
   }
-  model.scale = largest > 0 ? largest / held : 1;
+  model.scale = colour_scale(largest);
   for (std::size_t i = 0; i < model.texels.size(); ++i) {
     model.texels[i] =
         stored_value(model.storage, is_colour(i) ? model.texels[i] / model.scale : model.texels[i]);
   }
+}
+
+// What a fit of the same data and parameters makes; raised whenever that changes.
+constexpr int fit_version = 1;
+
+// The parameters that a checkpoint is known by: rounding comes after the fit, so that what is kept
+// serves any storage.
+std::string fit_parameters(FitOptions options) {
+  options.storage = Storage::float32;
+  return to_json(options);
+}
+
+// Of some texels: squares of luminances in 1/sr, and how many fell back.
+struct Tally {
+  double squared_error = 0;
+  double squared_data = 0;
+  double fell_back = 0;
+
+  static constexpr std::size_t numbers = 3;
+  void add(const Tally& other) {
+    squared_error += other.squared_error;
+    squared_data += other.squared_data;
+    fell_back += other.fell_back;
+  }
+};
+
+Tally fit_one(const Btf& btf, const PairTable& pairs, int lobes, std::size_t texel,
+              float* numbers) {
+  const TexelSamples samples = read_texel(btf, pairs, texel);
+  TexelFit fitted{.model{.count = lobes}};
+  Tally tally;
+  if (!samples.is_black) {
+    fitted = fit_texel(pairs, samples.luminance, lobes);
+    const double square = samples.largest * samples.largest;
+    tally.squared_error = fitted.error * square;
+    for (const double value : samples.luminance) tally.squared_data += value * value * square;
+    tally.fell_back = fitted.fell_back ? 1 : 0;
+  }
+  write_texel(fitted.model, samples, numbers);
+  return tally;
+}
+
+// A row of texels, side by side. `numbers` are the model's of that row.
+Tally fit_row(const Btf& btf, const PairTable& pairs, int lobes, std::size_t row,
+              std::span<float> numbers, Progress& progress) {
+  const auto width = static_cast<std::size_t>(btf.width());
+  std::vector<Tally> tallies(width);
+  tbb::parallel_for(std::size_t{0}, width, [&](std::size_t x) {
+    tallies[x] = fit_one(btf, pairs, lobes, row * width + x, &numbers[x * numbers.size() / width]);
+    progress.advance(1);
+  });
+  Tally sum;
+  for (const Tally& tally : tallies) sum.add(tally);
+  return sum;
+}
+
+std::vector<double> packed(const Tally& tally, std::span<const float> numbers) {
+  std::vector<double> piece(numbers.begin(), numbers.end());
+  piece.insert(piece.end(), {tally.squared_error, tally.squared_data, tally.fell_back});
+  return piece;
+}
+
+Tally unpacked(const std::vector<double>& piece, std::span<float> numbers) {
+  std::transform(piece.begin(), piece.end() - Tally::numbers, numbers.begin(),
+                 [](double v) { return static_cast<float>(v); });
+  const double* tally = &piece[numbers.size()];
+  return {tally[0], tally[1], tally[2]};
 }
 
 }  // namespace
@@ -85,21 +155,32 @@ Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
   Model model{.head = fitted_head(btf, to_json(options))};
   model.storage = options.storage;
   model.lobes = static_cast<std::size_t>(options.lobes);
-  const std::size_t texels = model.head.texels();
-  model.texels.resize(texels * 4 * model.quads());
+  model.texels.resize(model.head.texels() * 4 * model.quads());
+  const FitCheckpoint checkpoint = FitCheckpoint::of_fit(progress.kept_in(), btf, "lafortune",
+                                                         fit_version, fit_parameters(options));
   const PairTable pairs(btf.views(), btf.lights());
-  progress.start(static_cast<std::int64_t>(texels), "texels");
-  std::atomic<int> fell_back = 0;
-  tbb::parallel_for(std::size_t{0}, texels, [&](std::size_t texel) {
-    const TexelSamples samples = read_texel(btf, pairs, texel);
-    TexelFit fitted{.model{.count = options.lobes}};
-    if (!samples.is_black) fitted = fit_texel(pairs, samples.luminance, options.lobes);
-    write_texel(fitted.model, samples, &model.texels[texel * 4 * model.quads()]);
-    fell_back += fitted.fell_back ? 1 : 0;
-    progress.advance(1);
-  });
+  progress.start(static_cast<std::int64_t>(model.head.texels()), "texels");
+  const std::size_t row_numbers = btf.width() * 4 * model.quads();
+  Tally all;
+  for (std::size_t row = 0; row < static_cast<std::size_t>(btf.height()); ++row) {
+    const std::span<float> numbers(&model.texels[row * row_numbers], row_numbers);
+    const std::string piece = fmt::format("row_{:04}", row);
+    if (const auto found = checkpoint.find(piece, row_numbers + Tally::numbers)) {
+      all.add(unpacked(*found, numbers));
+      progress.advance(btf.width());
+    } else {
+      const Tally tally = fit_row(btf, pairs, options.lobes, row, numbers, progress);
+      checkpoint.keep(piece, packed(tally, numbers));
+      all.add(tally);
+    }
+    if (all.squared_data > 0) {
+      progress.note(fmt::format("luminance error {:.2f} %",
+                                100 * std::sqrt(all.squared_error / all.squared_data)));
+    }
+  }
   progress.finish();
-  progress.report("texels_that_fell_back", fell_back);
+  progress.report("texels_that_fell_back", all.fell_back);
+  progress.report("pieces_kept", static_cast<double>(checkpoint.found()));
   store_texels(model);
   return model;
 }

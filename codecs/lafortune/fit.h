@@ -20,7 +20,8 @@ std::string parameter_help();
 /// Every parameter, as canonical JSON.
 std::string to_json(const FitOptions& options);
 
-/// All texels side by side; how many fell back is reported to `progress`.
+/// Row by row, its texels side by side; rows that are done are kept in `progress.kept_in()`, and
+/// how many texels fell back is reported to `progress`.
 /// @throws Error  naming view, light and texel of a value that is not finite and >= 0.
 Model fit(const Btf& btf, const FitOptions& options, Progress& progress);
 

@@ -20,7 +20,14 @@ using reflectance_fields::FieldSamples;
 using reflectance_fields::Model;
 
 // What a fit of the same data and parameters makes; raised whenever that changes.
-constexpr int fit_version = 1;
+constexpr int fit_version = 2;
+
+// The parameters that a checkpoint is known by: rounding comes after the fit, so that what is kept
+// serves any storage.
+std::string fit_parameters(FitOptions options) {
+  options.storage = Storage::float32;
+  return to_json(options);
+}
 
 constexpr FitLimits limits{.iterations = 40, .tolerance = 1e-5};
 
@@ -78,8 +85,8 @@ class BtfFit {
   }
 
   Model run(Progress& progress) {
-    const FitCheckpoint checkpoint =
-        FitCheckpoint::of_fit(progress.kept_in(), btf_, "lobes", fit_version, to_json(options_));
+    const FitCheckpoint checkpoint = FitCheckpoint::of_fit(progress.kept_in(), btf_, "lobes",
+                                                           fit_version, fit_parameters(options_));
     progress.start(static_cast<std::int64_t>(btf_.views().size() * texels()), "fields");
     Tally all;
     for_some_views(btf_, [&](std::size_t first, const Btf& part) {
@@ -96,6 +103,7 @@ class BtfFit {
     progress.report("lobes_at_least_exponent", all.widest);
     progress.report("lobes_at_largest_exponent", all.narrowest);
     progress.report("lobes_at_largest_peak", all.highest);
+    progress.report("pieces_kept", static_cast<double>(checkpoint.found()));
     reflectance_fields::store_fields(model_);
     return std::move(model_);
   }
@@ -203,7 +211,7 @@ FieldFit fit_field(const LightTable& lights, std::span<const double> values, int
   all.insert(all.end(), others.begin(), others.end());
   for (LobeSum& lobes : all) {
     const double error = improve(lights, values, limits, lobes);
-    if (!(error <= best.error)) continue;  // a NaN is no fit
+    if (!(error <= best.error) || std::isinf(error)) continue;  // a NaN is no fit
     best = {lobes, error, false};
   }
   return best;

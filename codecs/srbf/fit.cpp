@@ -19,7 +19,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Raised when a fit makes something else of the same data.
-constexpr int fit_version = 1;
+constexpr int fit_version = 2;
+
+// The parameters that a checkpoint is known by: rounding and filtering come after the fit, so that
+// what is kept serves any.
+std::string fit_parameters(FitOptions options) {
+  options.storage = Storage::float32;
+  options.filtering = Filtering::values;
+  return to_json(options);
+}
 
 // Of black data, so that nothing is divided by 0.
 constexpr double smallest_scale = 1e-30;
@@ -98,7 +106,7 @@ Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
   model.quantity = options.quantity;
   model.filtering = options.filtering;
   const FitCheckpoint checkpoint =
-      FitCheckpoint::of_fit(progress.kept_in(), btf, "srbf", fit_version, model.head.parameters);
+      FitCheckpoint::of_fit(progress.kept_in(), btf, "srbf", fit_version, fit_parameters(options));
   const Samples samples(btf.views(), btf.lights(), options.quantity);
   const MipLevels data(btf);
   const MipSizes& sizes = data.sizes();
@@ -137,6 +145,7 @@ Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
     parents = std::move(result.kernels);
   }
   progress.finish();
+  progress.report("pieces_kept", static_cast<double>(checkpoint.found()));
   model.report = Json{{"levels", levels}}.dump();
   model.set_kernels(kernels, scale);
   return model;

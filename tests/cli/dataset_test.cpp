@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "images/image_file.h"
@@ -15,11 +14,6 @@ using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string read_bytes(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 struct Dataset {
   TemporaryFolder folder;
@@ -80,30 +74,6 @@ TEST_CASE("info --asymmetry tells the energies of a texel's light fields and ref
   CHECK(compressed.exit_code == 2);
   CHECK_THAT(compressed.err, Contains("small.ptm") && Contains("raw"));
   CHECK(compressed.out.empty());
-}
-
-TEST_CASE("compress continues an interrupted fit, and leaves no checkpoint") {
-  const Dataset dataset;
-  const auto fit = [&](const std::string& output) {
-    REQUIRE(dataset.run({"compress", "small.btf", "--codec", "lobes", "-o", output}).exit_code ==
-            0);
-    CHECK(!fs::exists(dataset.folder.path / (output + ".partial")));
-    return read_bytes(dataset.folder.path / output / "fields.exr");
-  };
-  const std::string whole = fit("whole.lobes");
-  // What a killed run of other data left is not taken, and goes.
-  fs::create_directories(dataset.folder.path / "b.lobes.partial");
-  std::ofstream(dataset.folder.path / "b.lobes.partial" / "checkpoint.json") << "{}";
-  std::ofstream(dataset.folder.path / "b.lobes.partial" / "view_000.f64") << "something";
-  CHECK(fit("b.lobes") == whole);
-  // And what is nobody's checkpoint stays.
-  fs::create_directories(dataset.folder.path / "c.lobes.partial");
-  std::ofstream(dataset.folder.path / "c.lobes.partial" / "letter.txt") << "dear";
-  const Outcome refused =
-      dataset.run({"compress", "small.btf", "--codec", "lobes", "-o", "c.lobes"});
-  CHECK(refused.exit_code == 2);
-  CHECK_THAT(refused.err, Contains("c.lobes.partial"));
-  CHECK(fs::exists(dataset.folder.path / "c.lobes.partial" / "letter.txt"));
 }
 
 TEST_CASE("extract writes the values of one view and one light, +y up") {

@@ -1,12 +1,17 @@
-// What is special about `lafortune`: its own lobes come back, and Lambert surfaces are exact
-// everywhere.
+// What is special about `lafortune`: its own lobes come back, Lambert surfaces are exact
+// everywhere, what it falls back to is safe and counted, and an interrupted fit continues.
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 
+#include "btf/random.h"
 #include "codecs/lafortune/lafortune_fit.h"
+#include "codecs/lafortune/lafortune_representation.h"
 #include "codecs/sample_error.h"
 #include "tests/codecs/synthetic_btf.h"
+#include "tests/temporary_folder.h"
 
 using namespace weft;
 
@@ -74,6 +79,59 @@ TEST_CASE("A Lambert surface is exact with Lafortune, between the samples too") 
   const Rgb value =
       fitted->evaluate({0.25F, 0.75F}, light, from_spherical(radians(50.0), radians(99.0)), 0);
   CHECK(value.y / light.z == Approx(0.2).epsilon(2e-3));
+}
+
+TEST_CASE("Texels that no start of Lafortune's fits fall back, are counted, and err no more") {
+  // A hair beside Lambert: the safe fit is there already when the first steps from the starts end.
+  const auto btf = synthetic_btf(
+      4, 4, "ubo81", "regular:3x6", [](int x, int y, const Direction& l, const Direction& v) {
+        const auto whole = [](float a) { return std::lround(1e4F * a); };
+        const double noise =
+            unit_float(hash_coordinates(x, y, whole(l.x), whole(l.y), whole(v.x), whole(v.y))) -
+            0.5;
+        return Rgb(static_cast<float>(0.5 + 1e-5 * noise));
+      });
+  Progress progress;
+  const auto fitted = codec_named("lafortune").fit(btf, Settings(), progress);
+  const double count = progress.reported().at("texels_that_fell_back");
+  CHECK(count > 0);
+  CHECK(count <= 16);
+  CHECK(sample_error(*btf, *fitted).relative_rmse < 1e-3);
+}
+
+TEST_CASE("A Lafortune fit of values that are no numbers falls back to what is finite") {
+  using namespace weft::lafortune;
+  const HemisphereSampling sampling(named_directions("regular:3x6"));
+  const PairTable pairs(sampling, sampling);
+  std::vector<double> values(pairs.padded());
+  for (std::size_t i = 0; i < pairs.size(); ++i) values[i] = 0.5 * pairs.cosine()[i];
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    values[7] = bad;
+    const TexelFit found = fit_texel(pairs, values, 2);
+    CHECK(found.fell_back);
+    CHECK(found.model.diffuse == 0);
+    for (const Lobe& lobe : found.model.lobe) CHECK(lobe.peak == 0);
+  }
+}
+
+TEST_CASE("An interrupted fit of Lafortune models continues with the rows that it has") {
+  const auto btf = realistic_btf(3, "regular:3x6");
+  const auto texels_of = [](const Representation& representation) {
+    return dynamic_cast<const lafortune::LafortuneRepresentation&>(representation).model().texels;
+  };
+  const std::vector<float> whole = texels_of(*fit(btf));
+  const TemporaryFolder folder;
+  const auto run = [&](double expected) {
+    Progress progress;
+    progress.keep_in(folder.path / "a.partial");
+    const auto fitted = codec_named("lafortune").fit(btf, Settings(), progress);
+    CHECK(progress.reported().at("pieces_kept") == expected);
+    return texels_of(*fitted);
+  };
+  CHECK(run(0) == whole);
+  CHECK(std::filesystem::remove(folder.path / "a.partial" / "row_0001.f64"));
+  CHECK(run(2) == whole);
 }
 
 TEST_CASE("One Lafortune model errs more than lobes or polynomials a view") {

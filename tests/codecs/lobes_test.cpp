@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "btf/atomic_file.h"
 #include "btf/random.h"
 #include "codecs/fit_checkpoint.h"
 #include "codecs/lobes/fit.h"
@@ -297,9 +298,13 @@ TEST_CASE("An interrupted fit of lobes continues with the views that it has, to 
   for (const char* view : {"view_004.f64", "view_007.f64"})
     CHECK(std::filesystem::remove(partial / view));
   CHECK(run() == whole);
+  // Rounding comes later: the pieces serve floats too.
+  Progress of_floats;
+  of_floats.keep_in(partial);
+  lobes::fit(*btf, {.storage = Storage::float32}, of_floats);
+  CHECK(of_floats.reported().at("pieces_kept") == static_cast<double>(btf->views().size()));
   // What is kept is what is taken: black views stay so.
-  Progress progress;
-  const FitCheckpoint kept = FitCheckpoint::of_fit(partial, *btf, "lobes", 1, to_json({}));
+  const FitCheckpoint kept(partial, read_text(partial / "checkpoint.json"));
   const std::size_t numbers = whole.size() / btf->views().size() + 6;
   CHECK(kept.find("view_002", numbers).has_value());
   kept.keep("view_002", std::vector<double>(numbers));
@@ -307,6 +312,22 @@ TEST_CASE("An interrupted fit of lobes continues with the views that it has, to 
   const std::size_t a_view = whole.size() / btf->views().size();
   for (std::size_t i = 0; i < a_view; ++i) CHECK(changed[2 * a_view + i] == 0);
   CHECK(std::equal(whole.begin(), whole.begin() + 2 * a_view, changed.begin()));
+}
+
+TEST_CASE(
+    "A field that no start of lobes fits falls back to a cosine, which is finite and counted") {
+  const LightTable lights(HemisphereSampling(named_directions("ubo81")));
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    std::vector<double> values(lights.padded());
+    for (std::size_t i = 0; i < lights.size(); ++i) values[i] = lights.direction(i)[2];
+    CHECK(!fit_field(lights, values, 2).fell_back);
+    values[40] = bad;
+    const FieldFit found = fit_field(lights, values, 2);
+    CHECK(found.fell_back);
+    CHECK(found.lobes.count == 2);
+    for (const Lobe& lobe : found.lobes.lobe) CHECK(lobe.peak == 0);
+  }
 }
 
 TEST_CASE("A fit of lobes reports what fell back and what stands at a bound") {

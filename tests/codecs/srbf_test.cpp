@@ -402,6 +402,13 @@ TEST_CASE("SRBF: an interrupted fit continues from its last level, to the same b
   const bool same = model_of(*fitted(btf, parameters, kept)).values == whole;
   CHECK(same);
   CHECK(std::filesystem::exists(kept / "level_0.f64"));
+  // Rounding and filtering come later: the pieces of 3 levels, fixed and free, serve others too.
+  Progress progress;
+  progress.keep_in(kept);
+  const FitOptions others = fit_options(Settings::from_text(
+      "", "test", {"kernels=4", "iterations=15", "bits=float", "filtering=numbers"}));
+  fit(*btf, others, progress);
+  CHECK(progress.reported().at("pieces_kept") == 6);
   // What is kept is used: the fit of other kernels under the name of the top tells.
   std::filesystem::remove_all(kept);
   fitted(btf, {"kernels=4", "iterations=1"}, kept);
