@@ -17,7 +17,7 @@ spp=${SPP:-64}
 structures=(checker rings tissue)
 components=(1 2 4 6 8 10 12 16)
 lambdas=(0.01 0.1 1 10 auto)
-paper_lambdas=(1 10)
+paper_lambdas=(0.1 1 10)
 lights=(0,0 30,0 60,0)
 # The codecs' own ways, where they depart from the papers.
 lod_paper=(top=mean prediction=open)
@@ -106,7 +106,6 @@ measure_factorisations() {
     for lambda in "${lambdas[@]}"; do
       numbers "figure3_hf_refit_${lambda}_$bits" checker hf clustered=false "bits=$bits" levels=false "lambda=$lambda"
     done
-    # At smaller lambda the scale is off by powers of ten, to infinity, where it is not solved again.
     for lambda in "${paper_lambdas[@]}"; do
       fit "figure3_hf_${lambda}_$bits" checker hf clustered=false "bits=$bits" levels=false refit_scale=false \
         "lambda=$lambda"

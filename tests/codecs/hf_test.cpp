@@ -232,7 +232,8 @@ TEST_CASE("What the Laplacian extrapolates does not take the steps of 8 bits") {
   CHECK(in_bytes < 0.02);
 }
 
-// A texel that few samples ask for, with small weights, takes a logarithm that exp makes a power of.
+// A texel that few samples ask for, with small weights, takes a logarithm that exp makes a power
+// of.
 TEST_CASE("A small lambda does not let texels that few samples ask for swamp their neighbours") {
   const auto btf = realistic_btf(4, "ubo81");
   for (const std::string bits : {"float", "8"}) {

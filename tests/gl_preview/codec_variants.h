@@ -40,6 +40,7 @@ inline std::vector<FittedVariant> fitted_variants(const std::shared_ptr<const we
     }
     if (codec.name == "cmf") {
       combinations.push_back({"rotate=false"});
+      combinations.push_back({"clustered=false", "rotate=true", "bits=float"});
       const std::string four = "factors=light,half,difference,view";
       combinations.push_back({four, "terms=2", "bits=8", "rotate=true"});
       combinations.push_back({four, "terms=3", "bits=float", "clustered=false", "levels=false"});
