@@ -8,15 +8,20 @@
 #include <atomic>
 #include <cmath>
 
+#include "codecs/srbf/kernel_order.h"
+
 namespace weft::srbf {
 
 namespace {
 
-// Differences of p, in units of lambda, weigh less than those of colours and angles.
-constexpr double centre_metric = 0.01;
-
 // Mean squared difference of a kernel's numbers beyond which a neighbour counts as another thing.
 constexpr double edge = 0.05;
+
+// Colours are pulled less than centres and angles: kernels that lie alike may differ in colour and
+// filter well, since sums are linear in it. Not pulled at all, neighbours' colours of opposite
+// signs grow until whatever difference of centres is left ruins what lies between
+// (docs/codecs/srbf.md).
+constexpr double colour_pull = 0.01;
 
 // A restart is tried where a neighbour's kernels are already this good, before any descent.
 constexpr double promising = 1.05;
@@ -29,17 +34,6 @@ struct Workspace {
   std::vector<float> channels;
 };
 
-// Weighted sum of squared differences, as a pull sees them.
-double distance(const Kernels& a, const Kernels& b) {
-  const std::size_t centres = a.shape().centres();
-  double sum = 0;
-  for (std::size_t i = 0; i < a.values().size(); ++i) {
-    const double difference = a.values()[i] - b.values()[i];
-    sum += (i < centres ? centre_metric : 1.0) * difference * difference;
-  }
-  return sum;
-}
-
 // Many pulls add up to one towards their weighted mean, but for a constant.
 class PullSum {
  public:
@@ -51,7 +45,7 @@ class PullSum {
   }
   Pull pull() const {
     if (weight_ == 0) return {};
-    Pull pull{.weight = {weight_ * centre_metric, weight_, weight_}, .target = sum_};
+    Pull pull{.weight = {weight_ * centre_metric, weight_, weight_ * colour_pull}, .target = sum_};
     for (double& value : pull.target) value /= weight_;
     return pull;
   }
@@ -121,11 +115,11 @@ class LevelFit {
   TexelFit from_parents(std::size_t texel) {
     const MipSizes& sizes = data_.sizes();
     const std::size_t own = sizes.parent(level_, texel);
-    std::vector<const Kernels*> starts{&parents_[own]};
+    std::vector<Kernels> starts{parents_[own]};
     if (options_.restarts) {
       for (const std::size_t t :
            around(own, sizes.width_of(level_ + 1), sizes.height_of(level_ + 1), 1))
-        starts.push_back(&parents_[t]);
+        starts.push_back(in_order_of(parents_[own], parents_[t]));
     }
     PullSum pulls(parents_[own].values().size());
     pulls.add(parents_[own], options_.mip_weight);
@@ -133,28 +127,37 @@ class LevelFit {
     workspace.fitter.set_pull(pulls.pull());
     TexelFit best = best_of(texel, workspace.fitter, starts, nullptr);
     if (hints_.empty() || best.value.total <= DescentLimits{}.enough) return best;
-    TexelFit other = workspace.fitter.descend(workspace.fitter.as_it_is(hints_[texel]),
-                                              {.iterations = options_.iterations});
+    TexelFit other = workspace.fitter.descend(
+        workspace.fitter.as_it_is(in_order_of(parents_[own], hints_[texel])),
+        {.iterations = options_.iterations});
     if (!(other.value.total < best.value.total)) return best;
     restarted_[texel] = 1;
     return other;
   }
 
   TexelFit from_neighbours(std::size_t texel) {
-    const Kernels& own = fits_[texel].kernels;
+    Kernels own = fits_[texel].kernels;
     PullSum pulls(own.values().size());
     pulls.add(parents_[data_.sizes().parent(level_, texel)], options_.mip_weight);
     for (const std::size_t t : around(texel, width_, height_, 2)) {
       const Kernels& neighbour = fits_[t].kernels;
-      pulls.add(neighbour, options_.smooth_weight * share(own, neighbour));
+      if (options_.smooth_weight > 0)
+        pulls.add(neighbour, options_.smooth_weight * share(own, in_order_of(own, neighbour)));
     }
-    std::vector<const Kernels*> starts;
+    // Where there is a pull, kernels lie as it has them; the texel's own may come to lie so, too.
+    const Pull pull = pulls.pull();
+    if (!pull.target.empty()) {
+      Kernels target(own.shape());
+      std::ranges::copy(pull.target, target.values().begin());
+      own = in_order_of(target, own);
+    }
+    std::vector<Kernels> starts;
     if (options_.restarts) {
       for (const std::size_t t : around(texel, width_, height_, 1))
-        starts.push_back(&fits_[t].kernels);
+        starts.push_back(in_order_of(own, fits_[t].kernels));
     }
     Workspace& workspace = workspace_at(texel);
-    workspace.fitter.set_pull(pulls.pull());
+    workspace.fitter.set_pull(pull);
     const TexelFit now = workspace.fitter.as_it_is(own);
     return best_of(texel, workspace.fitter, starts, &now);
   }
@@ -167,11 +170,11 @@ class LevelFit {
   }
 
   // Descends from `now`, or the first start, and from the most promising of the others.
-  TexelFit best_of(std::size_t texel, TexelFitter& fitter,
-                   const std::vector<const Kernels*>& starts, const TexelFit* now) {
+  TexelFit best_of(std::size_t texel, TexelFitter& fitter, const std::vector<Kernels>& starts,
+                   const TexelFit* now) {
     const DescentLimits limits{.iterations = options_.iterations};
     std::vector<TexelFit> begun;
-    for (const Kernels* start : starts) begun.push_back(fitter.as_it_is(*start));
+    for (const Kernels& start : starts) begun.push_back(fitter.as_it_is(start));
     TexelFit best =
         now != nullptr ? fitter.descend(*now, limits) : fitter.descend(begun[0], limits);
     const std::size_t first_other = now != nullptr ? 0 : 1;
