@@ -95,9 +95,18 @@ TexelFit TexelFitter::descend(const TexelFit& start, const DescentLimits& limits
   set_unknowns(x);
   TexelFit end = as_it_is(std::move(tried));
   const bool diverged = !ended || !is_finite(end);
-  if (diverged || end.value.total > start.value.total) end = start;
+  if (diverged || end.value.total > start.value.total) end = safe(start);
   end.fell_back = diverged;
   return end;
+}
+
+// Where not even a start has an error that is a number, its kernels stay, with no colours: what
+// they sum up to is 0.
+TexelFit TexelFitter::safe(TexelFit fit) const {
+  if (is_finite(fit)) return fit;
+  for (double& number : fit.kernels.values()) number = std::isfinite(number) ? number : 0;
+  std::ranges::fill(fit.kernels.colours(), 0.0);
+  return fit;
 }
 
 TexelFit TexelFitter::descend(const TexelFit& start, const DescentLimits& limits) {
@@ -120,6 +129,9 @@ TexelFit TexelFitter::from_scratch(int starts, const DescentLimits& limits) {
     }
     if (is_finite(end) && !(best.value.total <= end.value.total)) best = std::move(end);
   }
+  if (is_finite(best)) return best;
+  best = safe(std::move(best));
+  best.fell_back = true;
   return best;
 }
 

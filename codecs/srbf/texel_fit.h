@@ -26,7 +26,8 @@ class TexelFitter {
 
   /// What kernels are worth here, with the colours that suit this texel.
   TexelFit as_it_is(Kernels kernels);
-  /// L-BFGS from `start`. A descent that diverges leaves the start, with its colours.
+  /// L-BFGS from `start`. A descent that diverges leaves the start, with its colours, or black
+  /// where they are no numbers.
   TexelFit descend(const TexelFit& start, const DescentLimits& limits);
   /// The best of `starts` guesses, each fitted with its angles fixed, then (where they are) free:
   /// by expectation and maximisation from different samples, and one by narrow kernels at the
@@ -35,6 +36,7 @@ class TexelFitter {
 
  private:
   TexelFit descend(const TexelFit& start, const DescentLimits& limits, bool free_angles);
+  TexelFit safe(TexelFit fit) const;
   std::vector<double> units(const Kernels& kernels) const;
   Kernels guess_of_peaks();
   std::size_t largest_error(const Kernels& kernels) const;

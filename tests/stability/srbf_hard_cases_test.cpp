@@ -4,11 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/acquire.h"
+#include "btf/vector.h"
 #include "codecs/representation.h"
 #include "codecs/sample_error.h"
 #include "codecs/srbf/kernels.h"
 #include "codecs/srbf/objective.h"
 #include "codecs/srbf/srbf_representation.h"
+#include "codecs/srbf/texel_fit.h"
+#include "tests/acquisition/mesostructure_files.h"
 
 using namespace weft;
 using namespace weft::srbf;
@@ -146,4 +150,117 @@ TEST_CASE("SRBF bears modes in which light and view cancel, a psi of no length")
   }
   check_gradient_is_finite(kernels, directions);
   check_gradient_is_finite(kernels, {Direction(0, 0, 1)});
+}
+
+TEST_CASE("SRBF fits from centres at antipodes of all that is bright") {
+  const auto directions = named_directions("regular:3x8");
+  const Direction peak = from_spherical(0.5, 1);
+  const auto lobe = [&](const Direction& l, const Direction& v) {
+    return 0.1F + std::exp(12 * (((l + v).normalized() ^ peak) - 1));
+  };
+  const auto btf = btf_of(directions, directions, lobe);
+  const Samples samples(btf->views(), btf->lights(), Quantity::radiance);
+  std::vector<float> abrdf(3 * samples.pairs);
+  btf->abrdf(0, 0, abrdf);
+  const std::vector<float> texel = channel_arrays(samples, abrdf, 1);
+  const Modes modes = modes_named("optimal", 3, true);
+  TexelFitter fitter(samples, modes, 6);
+  fitter.set_texel(texel);
+  for (const double lambda : {0.5, 3.0, 40.0, 1e4, 1e8}) {
+    INFO("lambda " << lambda);
+    Kernels kernels({6, 3});
+    std::ranges::copy(modes.angles, kernels.angles().begin());
+    for (std::size_t j = 0; j < 6; ++j) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (int c = 0; c < 3; ++c)
+          kernels.centre(j, k)[c] = lambda * (j % 2 == 0 ? -peak[c] : peak[c]);
+      }
+    }
+    const TexelFit start = fitter.as_it_is(kernels);
+    const TexelFit end = fitter.descend(start, {.iterations = 60});
+    for (const double v : end.kernels.values()) REQUIRE(std::isfinite(v));
+    CHECK(!end.fell_back);
+    CHECK(end.value.total <= start.value.total);
+    if (lambda < 10) CHECK(end.value.total < 0.5 * start.value.total);
+  }
+}
+
+TEST_CASE("SRBF fits data where light and view cancel in a mode, a_k = -b_k") {
+  // Lights and views are the same directions: the difference of many pairs has no length, and no
+  // a and b make a_k = b_k = 0 otherwise, since they are a cosine and a sine.
+  const auto directions = named_directions("regular:3x6");
+  const auto back = [](const Direction& l, const Direction& v) {
+    return 0.1F + std::exp(6 * ((l ^ v) - 1));  // brightest there
+  };
+  const auto btf = btf_of(directions, directions, back);
+  CHECK(error_of(btf, 1.1F, {"modes=half-difference"}) < 0.4);
+  CHECK(error_of(btf, 1.1F, {"modes_a_kernel=4"}) < 0.08);
+}
+
+TEST_CASE("SRBF in halfs is finite up to 65504, and 1e8") {
+  const auto directions = named_directions("regular:3x6");
+  for (const float largest : {1.0F, 65504.0F, 1e8F, 1e30F}) {
+    INFO("largest " << largest);
+    const auto lobe = [&](const Direction& l, const Direction& v) {
+      return largest * (0.001F + std::exp(40 * ((l + v).normalized().z - 1)));
+    };
+    const auto btf = btf_of(directions, directions, lobe);
+    Progress silent;
+    const auto fit = codec_named("srbf").fit(
+        btf, Settings::from_text("", "test", {"kernels=6", "iterations=50"}), silent);
+    CHECK(fitted_error(*btf, *fit, largest) < 0.02);
+    const Model& model = dynamic_cast<const SrbfRepresentation&>(*fit).model();
+    CHECK(model.storage == Storage::half);
+    for (const float value : model.values) {
+      REQUIRE(std::abs(value) <= 1);
+      REQUIRE(value == static_cast<float>(half(value)));
+    }
+    for (const float scale : model.scale) REQUIRE(std::isfinite(scale));
+  }
+}
+
+TEST_CASE("SRBF counts texels whose fit diverges in its report, and shows them black") {
+  // Near the largest float the Lanczos filter overflows, so that the coarser level is infinite; the
+  // data themselves are not.
+  const auto directions = named_directions("regular:2x4");
+  const float large = 3.3e38F;
+  auto btf = std::make_shared<Btf>(2, 2, HemisphereSampling(directions),
+                                   HemisphereSampling(directions), PixelType::float32);
+  for (std::size_t i = 0; i < 4 * directions.size() * directions.size(); ++i)
+    btf->set(i / 4 % directions.size(), i / 4 / directions.size(), i % 2, i / 2 % 2, Rgb(large));
+  Progress silent;
+  const auto fit = codec_named("srbf").fit(
+      btf, Settings::from_text("", "test", {"kernels=3", "iterations=10", "modes=half-light-view"}),
+      silent);
+  const Model& model = dynamic_cast<const SrbfRepresentation&>(*fit).model();
+  CHECK(model.report.find("\"fallbacks\":1") != std::string::npos);
+  CHECK(model.report.find("\"fallbacks\":0") != std::string::npos);
+  for (const float value : model.values) REQUIRE(std::isfinite(value));
+  CHECK(fit->evaluate({0.5F, 0.5F}, directions[0], directions[0], 1).x == 0);
+  CHECK(fit->evaluate({0.25F, 0.25F}, directions[0], directions[0], 0).x == Approx(large));
+}
+
+TEST_CASE("SRBF: halfs of traced data err within 2 percent of what the fit did in double") {
+  AcquisitionSettings settings;
+  settings.trace = {.width = 2, .height = 2, .spp = 16, .max_bounces = 4, .seed = 5};
+  const auto btf = std::make_shared<Btf>(
+      acquire(read_mesostructure(mesostructure_folder() / "tissue.toml"), settings));
+  Progress silent;
+  const auto fit = codec_named("srbf").fit(
+      btf,
+      Settings::from_text("", "test",
+                          {"bits=float", "iterations=20", "starts=1", "modes=half-light-view"}),
+      silent);
+  Model halfs = dynamic_cast<const SrbfRepresentation&>(*fit).model();
+  halfs.storage = Storage::half;
+  bool changed = false;
+  for (float& value : halfs.values) {
+    changed = changed || value != stored_value(Storage::half, value);
+    value = stored_value(Storage::half, value);
+  }
+  CHECK(changed);
+  const double whole = sample_error(*btf, *fit).relative_rmse;
+  CHECK(whole > 0.03);
+  CHECK(sample_error(*btf, SrbfRepresentation(std::move(halfs))).relative_rmse ==
+        Approx(whole).epsilon(0.02));
 }
