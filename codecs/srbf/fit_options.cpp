@@ -1,10 +1,33 @@
 // The parameters of an SRBF fit: their names, defaults and ranges.
 
+#include <fmt/core.h>
+
 #include <nlohmann/json.hpp>
 
+#include "btf/error.h"
 #include "codecs/srbf/fit.h"
 
 namespace weft::srbf {
+
+namespace {
+
+Modes modes_parameter(const Settings& parameters) {
+  const std::string name = parameters.choice("modes", mode_names());
+  const std::int64_t count = parameters.integer("modes_a_kernel", 3, 1, most_modes);
+  const bool multivariate = parameters.flag("multivariate", true);
+  Modes modes = modes_named(name, static_cast<std::size_t>(count), multivariate);
+  const std::size_t found = modes.angles.size();
+  if (parameters.has("modes_a_kernel") && found != static_cast<std::size_t>(count)) {
+    throw bad_input(
+        parameters.where("modes_a_kernel"),
+        fmt::format("modes_a_kernel = {}, but {} has {} a kernel", count,
+                    multivariate ? fmt::format("modes = {}", name) : "multivariate = false", found),
+        "only modes = optimal has as many as asked for, and multivariate = false always one");
+  }
+  return modes;
+}
+
+}  // namespace
 
 FitOptions fit_options(const Settings& parameters) {
   FitOptions options;
@@ -13,9 +36,7 @@ FitOptions fit_options(const Settings& parameters) {
     return static_cast<int>(parameters.integer(key, fallback, least, most));
   };
   options.kernels = static_cast<std::size_t>(count("kernels", 20, 1, 64));
-  const std::string modes = parameters.choice("modes", mode_names());
-  const auto modes_a_kernel = static_cast<std::size_t>(count("modes_a_kernel", 3, 1, most_modes));
-  options.modes = modes_named(modes, modes_a_kernel, parameters.flag("multivariate", true));
+  options.modes = modes_parameter(parameters);
   options.quantity =
       parameters.choice("quantity", {"B", "f"}) == "f" ? Quantity::over_cosine : Quantity::radiance;
   options.storage = storage_parameter(parameters);
@@ -43,7 +64,7 @@ std::string parameter_help() {
          "mip_weight = 0            c_mip: pull towards the parent's numbers\n"
          "modes = optimal           optimal: angles are fitted; or fixed: half-half-half | "
          "half-difference | half-light-view | in-out\n"
-         "modes_a_kernel = 3        K of `optimal`, 1 to 4\n"
+         "modes_a_kernel = 3        K, 1 to 4; fixed modes have their own\n"
          "multivariate = true       false: one mode a kernel (the univariate SRBF)\n"
          "quantity = B              B, or f = B / cos(theta_light): what the kernels sum up to\n"
          "restarts = true           from a neighbour's kernels, where they fit a texel better\n"
