@@ -62,7 +62,7 @@ double bandwidth(double mean_length) {
   return std::min(r * (3 - r * r) / (1 - r * r), broadest_start);
 }
 
-// Of a kernel: what equation 3.11 sums over the samples.
+// Of a kernel: what equation 3.10 sums over the samples.
 struct Moments {
   std::array<std::array<double, 3>, most_modes> sum{};
   double weight = 0;
@@ -84,7 +84,8 @@ void share_out(const Point& point, std::span<const double> values, std::vector<M
   }
 }
 
-// One round; `height` are the F_j of the mixture.
+// One round; `height` are the F_j of the mixture. The angles stay: equation 3.11 would turn every
+// mode to the half-way vector, where psi varies least (docs/codecs/srbf.md).
 void improve(const std::vector<Point>& points, Kernels& kernels, std::vector<double>& height) {
   const Shape shape = kernels.shape();
   std::vector<Moments> moments(shape.kernels);
