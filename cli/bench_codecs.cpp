@@ -203,7 +203,7 @@ void add_bench_codecs(CLI::App& bench, Session& session) {
       "Fit every codec with its defaults to one dataset, and measure the fit (seconds, memory over "
       "that of the raw data), decoding on one thread (ns a query, one by one and batched: median "
       "of 301 passes over 1,024 fixed queries), error at the samples and bytes, and with --json "
-      "each level of detail's times and error between the samples; then CMF and HF by "
+      "each level of detail's times and error between the samples; then CMF, HF and laplacian by "
       "their parameters, on directions as dense as their paper's. Datasets are traced once and "
       "kept in $XDG_CACHE_HOME/weft or ~/.cache/weft");
   codecs
@@ -221,8 +221,9 @@ void add_bench_codecs(CLI::App& bench, Session& session) {
       ->check(whole_number(1 << 20, 1));
   codecs->add_option("--directions", options->directions, "Views and lights, as in acquire")
       ->capture_default_str();
-  codecs->add_flag("--variants,!--no-variants", options->variants,
-                   "Whether to measure CMF and HF by their parameters; on unless --no-variants");
+  codecs->add_flag(
+      "--variants,!--no-variants", options->variants,
+      "Whether to measure CMF, HF and laplacian by their parameters; on unless --no-variants");
   codecs->add_option("--variant-data", options->variant_data,
                      "Raw BTF to measure the variants on, in place of a traced one");
   codecs

@@ -26,8 +26,9 @@ constexpr std::size_t bytes_a_pair = 1024;             // components of a matrix
 std::size_t fit_working_bytes(const BtfHeader& data, const Codec& codec, std::size_t threads) {
   const std::size_t texels = static_cast<std::size_t>(data.width) * data.height;
   const std::size_t pairs = data.views.size() * data.lights.size();
-  const std::size_t fit = threads * pairs * bytes_a_thread_and_pair +
-                          texels * codec.fit_bytes_a_texel + 3 * pairs * bytes_a_pair;
+  const std::size_t fit =
+      threads * pairs * bytes_a_thread_and_pair + texels * codec.fit_bytes_a_texel +
+      texels * data.views.size() * codec.fit_bytes_a_texel_and_view + 3 * pairs * bytes_a_pair;
   const std::size_t one_view = 3 * texels * data.lights.size() * 2 * sizeof(float);
   return bytes_always + std::max(fit, one_view);
 }

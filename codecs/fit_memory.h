@@ -12,8 +12,9 @@
 namespace weft {
 
 /// What a fit with the codec's default parameters, from reading the data to writing the result,
-/// takes at most beside the arrays of a `MemoryBudget`: it grows with the texels and with the
-/// pairs, never with their product (tests/cli/compress_memory_test.cpp).
+/// takes at most beside the arrays of a `MemoryBudget`: it grows with the texels (of some
+/// codecs: times views) and with the pairs, never with their product
+/// (tests/cli/compress_memory_test.cpp).
 std::size_t fit_working_bytes(const BtfHeader& data, const Codec& codec, std::size_t threads);
 
 /// What is left for those arrays of `memory` bytes for the whole process.

@@ -52,6 +52,8 @@ struct Codec {
   /// What a fit with default parameters works with for each texel, beside the data and what lies in
   /// their `MemoryBudget`, with half as much again to spare.
   std::size_t fit_bytes_a_texel = 1024;
+  /// The same for each texel and view, of codecs whose result grows with both.
+  std::size_t fit_bytes_a_texel_and_view = 0;
 };
 
 /// Every codec, `raw` first. The table is in registry.cpp, a line a codec.

@@ -33,11 +33,11 @@ class HalfLink {
   /// The link's value at each [light][view] pair, raised to 0 where it is less.
   LaneVector values(const HalfMaps& maps) const;
 
-  /// One round that lowers sum over pairs of w_light (f - others * link)^2, Q's texels and then
-  /// D's: by the multiplicative updates of Lee and Seung, which keep them >= 0; or, signed, along
-  /// the gradient that each texel's curvature scales, to the least of the sum. Where there are
-  /// fewer pairs than the map has texels for, updates are spread over neighbours, and of the first
-  /// kind may raise the sum.
+  /// One round that lowers sum over pairs of w_light (f - others * link)^2, the link as it is
+  /// before what is less is raised to 0, Q's texels and then D's: by the multiplicative updates of
+  /// Lee and Seung, which keep them >= 0; or, signed, along the gradient that each texel's
+  /// curvature scales, to the least of the sum. Where there are fewer pairs than the map has texels
+  /// for, updates are spread over neighbours, and of the first kind may raise the sum.
   /// @param others         the product of the other links at each pair, >= 0.
   /// @param light_weights  w_light, > 0, one a light.
   /// @param sign           non-negative of maps that are.

@@ -76,28 +76,56 @@ void add_to(nlohmann::json& parameters, const StorageOptions& options) {
   parameters["weighted"] = options.weighted;
 }
 
+FittedMaps::FittedMaps(Eigen::Index texels, Eigen::Index values, bool in_halfs,
+                       const std::shared_ptr<MemoryBudget>& memory)
+    : texels_(texels), values_(values), memory_(memory) {
+  if (in_halfs)
+    halfs_ = LargeArray<Imath::half>(static_cast<std::size_t>(texels * values), memory);
+  else
+    floats_ = LargeRows(texels, values, memory);
+}
+
+void FittedMaps::set_row(Eigen::Index texel, std::span<const float> values) {
+  if (halfs_.size() == 0)
+    std::ranges::copy(values, floats_.matrix().row(texel).data());
+  else
+    std::ranges::copy(values, halfs_.data() + texel * values_);
+}
+
+LargeRows FittedMaps::taken_rows() {
+  if (halfs_.size() == 0) return std::move(floats_);
+  LargeRows rows(texels_, values_, memory_);
+  tbb::parallel_for(Eigen::Index{0}, texels_, [&](Eigen::Index texel) {
+    std::copy_n(halfs_.data() + texel * values_, values_, rows.matrix().row(texel).data());
+  });
+  halfs_ = {};
+  return rows;
+}
+
 FittedFactors::FittedFactors(const TexelSource& source, const StorageOptions& options)
     : scale(3 * source.size(), 1.0F),
       resolution(options.resolution),
+      in_halfs(options.eight_bit),
       memory(source.finest().memory()) {}
 
 void FittedFactors::add(Projection projection, int terms) {
   const auto texels = static_cast<Eigen::Index>(scale.size() / 3);
   const Eigen::Index values = Eigen::Index{3} * terms * resolution * resolution;
-  factors.push_back({projection, terms, LargeRows(texels, values, memory)});
+  factors.push_back({projection, terms, FittedMaps(texels, values, in_halfs, memory)});
 }
 
 void store(const LaneVector& maps, std::span<const std::size_t> texels, std::size_t factor,
            FittedFactors& fitted) {
+  std::vector<float> row(3 * maps.size());
   for (int k = 0; k < 3 * static_cast<int>(texels.size()); ++k) {
     float largest = 0;
     for (const Lanes& value : maps) largest = std::max(largest, std::abs(value[k]));
     const std::size_t texel = texels[k / 3];
-    float* row = fitted.factors[factor].maps.matrix().row(static_cast<Eigen::Index>(texel)).data();
     for (std::size_t t = 0; t < maps.size(); ++t) {
       row[3 * t + k % 3] = largest > 0 ? maps[t][k] / largest : 0.0F;
     }
     fitted.scale[3 * texel + k % 3] *= largest;
+    if (k % 3 == 2) fitted.factors[factor].maps.set_row(static_cast<Eigen::Index>(texel), row);
   }
 }
 
@@ -202,7 +230,7 @@ Model assemble(const TexelSource& source, FittedFactors fitted, const StorageOpt
   const std::vector<double> energy =
       options.clustered && options.weighted ? energies(source) : std::vector<double>();
   for (std::size_t f = 0; f < fitted.factors.size(); ++f) {
-    LargeRows maps = std::move(fitted.factors[f].maps);  // freed at the end of its turn
+    LargeRows maps = fitted.factors[f].maps.taken_rows();  // freed at the end of its turn
     if (options.clustered)
       cluster_factor(std::move(maps), energy, f, options, model, fitted.scale, progress);
     else

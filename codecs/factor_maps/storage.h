@@ -2,7 +2,11 @@
 // 004, sections 5 and 6). The same for every codec of factor maps.
 #pragma once
 
+#include <half.h>
+
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,11 +37,30 @@ std::string storage_help(int refine_codebooks = 0);
 /// Adds every parameter.
 void add_to(nlohmann::json& parameters, const StorageOptions& options);
 
-/// All texels' maps of one factor, a row a texel of any level: [term][row][column][rgb].
+/// One factor's maps of all texels, a row a texel of any level: [term][row][column][rgb]. What ends
+/// in 8 bits is kept in halfs (11 bits): with floats, maps and data would be three times the data.
+class FittedMaps {
+ public:
+  FittedMaps(Eigen::Index texels, Eigen::Index values, bool in_halfs,
+             const std::shared_ptr<MemoryBudget>& memory);
+
+  /// @param values  -1..1. Thread-safe for different texels.
+  void set_row(Eigen::Index texel, std::span<const float> values);
+  /// All of it in floats, which takes the place of what is here.
+  LargeRows taken_rows();
+
+ private:
+  Eigen::Index texels_;
+  Eigen::Index values_;
+  std::shared_ptr<MemoryBudget> memory_;
+  LargeRows floats_;
+  LargeArray<Imath::half> halfs_;
+};
+
 struct FittedFactor {
   Projection projection = Projection::light;
   int terms = 1;
-  LargeRows maps;
+  FittedMaps maps;
 };
 
 struct FittedFactors {
@@ -48,6 +71,7 @@ struct FittedFactors {
   std::vector<float> scale;            ///< [texel][rgb]: what the maps were divided by
   std::vector<std::uint8_t> rotation;  ///< as `Model::rotation`
   int resolution;
+  bool in_halfs;
   std::shared_ptr<MemoryBudget> memory;  ///< the data's
 };
 

@@ -118,27 +118,24 @@ class Solver {
   // 8 bits and swamp its neighbours. Then the map is changed so that its own lookup returns what
   // was fitted.
   LaneVector exponential(const DoubleVector& x, int factor, DoubleLanes& shift) const {
-    const std::size_t first = factor * lookup_.map_texels();
+    const DoubleLanes* logarithm = &x[factor * lookup_.map_texels()];
     const std::vector<BilinearTaps>& taps = taps_of(factor);
-    DoubleVector sampled(taps.size());
     DoubleLanes largest;
     std::fill_n(largest.lane, lane_count, -std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < taps.size(); ++i) {
-      for (std::size_t t = 0; t < 4; ++t) {
-        for (int k = 0; k < lane_count; ++k)
-          sampled[i][k] += taps[i].weight[t] * x[first + taps[i].index[t]][k];
-      }
-      for (int k = 0; k < lane_count; ++k) largest[k] = std::max(largest[k], sampled[i][k]);
+    for (const BilinearTaps& sample : taps) {
+      const DoubleLanes value = looked_up(logarithm, sample);
+      for (int k = 0; k < lane_count; ++k) largest[k] = std::max(largest[k], value[k]);
     }
     LaneVector map(lookup_.map_texels());
     for (std::size_t t = 0; t < map.size(); ++t) {
       for (int k = 0; k < lane_count; ++k)
-        map[t][k] = static_cast<float>(std::exp(std::min(x[first + t][k] - largest[k], 0.0)));
+        map[t][k] = static_cast<float>(std::exp(std::min(logarithm[t][k] - largest[k], 0.0)));
     }
     LaneVector samples(taps.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
+      const DoubleLanes value = looked_up(logarithm, taps[i]);
       for (int k = 0; k < lane_count; ++k)
-        samples[i][k] = static_cast<float>(std::exp(sampled[i][k] - largest[k]));
+        samples[i][k] = static_cast<float>(std::exp(value[k] - largest[k]));
     }
     for (int k = 0; k < lane_count; ++k) shift[k] += largest[k];
     if (factor == 1) {
@@ -153,8 +150,16 @@ class Solver {
     return factor == 0 ? light_map_.taps() : factor == 1 ? lookup_.half() : view_map_.taps();
   }
 
-  // One multiplicative update (Lee and Seung) of the map towards the samples: half-vectors are too
-  // many for their equations to be solved.
+  static DoubleLanes looked_up(const DoubleLanes* map, const BilinearTaps& taps) {
+    DoubleLanes value;
+    for (std::size_t t = 0; t < 4; ++t) {
+      for (int k = 0; k < lane_count; ++k) value[k] += taps.weight[t] * map[taps.index[t]][k];
+    }
+    return value;
+  }
+
+  // One multiplicative update (Lee and Seung) of the map towards the samples, none of which is
+  // above 1: half-vectors are too many for their equations to be solved.
   static void correct(const std::vector<BilinearTaps>& taps, const LaneVector& samples,
                       LaneVector& map) {
     LaneVector wanted(map.size());
@@ -170,7 +175,7 @@ class Solver {
     }
     for (std::size_t t = 0; t < map.size(); ++t) {
       for (int k = 0; k < lane_count; ++k) {
-        if (present[t][k] > 0) map[t][k] *= wanted[t][k] / present[t][k];
+        if (present[t][k] > 0) map[t][k] = std::min(map[t][k] * wanted[t][k] / present[t][k], 1.0F);
       }
     }
   }

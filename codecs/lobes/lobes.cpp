@@ -19,7 +19,8 @@ Codec lobes_codec() {
           .load = [](const std::filesystem::path& folder) -> std::unique_ptr<Representation> {
             return std::make_unique<FieldRepresentation>(
                 reflectance_fields::read_model(folder, "lobes"));
-          }};
+          },
+          .fit_bytes_a_texel_and_view = reflectance_fields::fit_bytes_a_field};
 }
 
 }  // namespace weft

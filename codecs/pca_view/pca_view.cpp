@@ -46,7 +46,8 @@ Codec pca_view_codec() {
           },
           .load = [](const std::filesystem::path& folder) -> std::unique_ptr<Representation> {
             return std::make_unique<pca::PcaRepresentation>(pca::read_model(folder, "pca-view"));
-          }};
+          },
+          .fit_bytes_a_texel_and_view = 96};  // of default_components weights, three or four times
 }
 
 }  // namespace weft

@@ -44,6 +44,10 @@ struct Model {
   std::size_t bytes() const { return fields.size() * bytes_a_value(storage); }
 };
 
+/// What a fit of three quads a field takes for each: the model, the picture that is written, what a
+/// view's checkpoint holds, and half as much again.
+constexpr std::size_t fit_bytes_a_field = 224;
+
 /// A model of zeros.
 Model empty_model(const Btf& btf, const std::string& codec, Kind kind, std::size_t lobes,
                   Storage storage, const std::string& parameters);

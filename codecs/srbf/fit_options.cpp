@@ -82,6 +82,7 @@ std::string to_json(const FitOptions& options) {
                         {"mip_weight", options.mip_weight},
                         {"modes", options.modes.name},
                         {"modes_a_kernel", options.modes.angles.size()},
+                        {"multivariate", options.modes.multivariate},
                         {"quantity", options.quantity == Quantity::radiance ? "B" : "f"},
                         {"restarts", options.restarts},
                         {"robust", options.robust},

@@ -9,7 +9,8 @@ namespace weft::srbf {
 /// Differences of p, in units of lambda, weigh less than those of colours and angles.
 constexpr double centre_metric = 0.01;
 
-/// Weighted sum of squared differences, number by number, as a pull sees them.
+/// Weighted sum of squared differences, number by number, as the robust penalty
+/// sees them.
 double distance(const Kernels& a, const Kernels& b);
 
 /// `kernels` in the order that lies nearest to `reference`: of all J! the one of the least

@@ -142,7 +142,7 @@ class LevelFit {
     for (const std::size_t t : around(texel, width_, height_, 2)) {
       const Kernels& neighbour = fits_[t].kernels;
       if (options_.smooth_weight > 0)
-        pulls.add(neighbour, options_.smooth_weight * share(own, in_order_of(own, neighbour)));
+        pulls.add(neighbour, options_.smooth_weight * share(own, neighbour));
     }
     // Where there is a pull, kernels lie as it has them; the texel's own may come to lie so, too.
     const Pull pull = pulls.pull();

@@ -27,6 +27,7 @@ Modes modes_named(const std::string& name, std::size_t count, bool multivariate)
   Modes modes = *std::ranges::find(known, name, &Modes::name);
   if (modes.free) modes.angles.resize(count);
   if (!multivariate) modes.angles.resize(1);
+  modes.multivariate = multivariate;
   return modes;
 }
 

@@ -40,6 +40,7 @@ struct Modes {
   std::string name;
   std::vector<double> angles;
   bool free = false;
+  bool multivariate = true;
 };
 
 /// `modes`: optimal | half-half-half | half-difference | half-light-view | in-out; `multivariate =

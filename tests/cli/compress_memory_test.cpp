@@ -151,9 +151,11 @@ TEST_CASE("compress --memory holds for every codec, on data several times as lar
     return;
   }
   const Place place("128", "ubo81");  // 645 MB
-  const long memory = place.least_memory() + 8;
-  CHECK(memory < 200);
   for (const std::string& codec : codec_names) {
+    // Lobes, PTM and PCA a view make results that grow with texels times views.
+    const bool a_view = codec == "lobes" || codec == "ptm" || codec == "pca-view";
+    const long memory = place.least_memory(codec) + 8;
+    CHECK(memory < (a_view ? 500 : 200));
     std::vector<std::string> options = {"--memory", mebibytes(memory)};
     // The maps are the same for any number of pairs: smaller ones, so that fitting them is quick.
     if (codec == "cmf" || codec == "hf") options.insert(options.end(), {"--set", "resolution=8"});
@@ -173,18 +175,24 @@ TEST_CASE("compress --memory holds for srbf, whose texels take most", "[slow]") 
               {"--memory", mebibytes(memory), "--set", "iterations=1", "--set", "starts=1"});
 }
 
+// What the program holds of its own, libraries and all, is left out: what it takes for one texel.
 TEST_CASE("compress takes less than three times the raw data with every codec", "[slow]") {
   if (is_sanitized()) {
     WARN("skipped: the sanitizer's own memory is more");
     return;
   }
   const Place place("64", "ubo81");
+  const Place tiny("1", "regular:2x4");
   constexpr long raw = 6L * 64 * 64 * 81 * 81;
   for (const std::string& codec : codec_names) {
+    const long program = tiny.run({}, tiny.compress(codec, {})).peak_kibibytes;
+    fs::remove_all(tiny.folder.path / "out");
     const Outcome outcome = place.run({}, place.compress(codec, {}));
-    INFO(codec << ": " << outcome.peak_kibibytes / 1024 << " MiB of " << 3 * (raw >> 20));
+    const long of_fit = outcome.peak_kibibytes - program;
+    INFO(codec << ": " << of_fit / 1024 << " MiB of " << 3 * (raw >> 20) << ", the program "
+               << program / 1024);
     CHECK(outcome.exit_code == 0);
-    CHECK(outcome.peak_kibibytes * 1024 < 3 * raw);
+    CHECK(of_fit * 1024 < 3 * raw);
     fs::remove_all(place.folder.path / "out");
   }
 }

@@ -59,13 +59,14 @@ struct Place {
   /// @return how many pieces there are.
   std::ptrdiff_t kill_compress(const std::string& output, const std::string& codec,
                                const std::string& more = "") const {
-    const Outcome killed = run_program(
-        {"sh", "-c",
-         "\"$0\" compress a.btf --threads 1 --codec " + codec + " -o " + output + " " + more +
-             " & task=$!; until set -- " + output +
-             ".partial/*.f64; [ -e \"$1\" ]; do sleep 0.002; done; kill -KILL $task; wait $task",
-         WEFT_BINARY},
-        folder.path);
+    const Outcome killed =
+        run_program({"sh", "-c",
+                     "\"$0\" compress a.btf --threads 1 --codec " + codec + " -o " + output + " " +
+                         more + " & task=$!; until set -- " + output +
+                         ".partial/*.f64; [ -e \"$1\" ]; do kill -0 $task || break; sleep 0.002; "
+                         "done; kill -KILL $task; wait $task",
+                     WEFT_BINARY},
+                    folder.path);
     INFO(killed.err);
     REQUIRE(killed.exit_code == 128 + 9);
     CHECK(!fs::exists(folder.path / output));

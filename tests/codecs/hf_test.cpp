@@ -301,7 +301,7 @@ TEST_CASE("lambda = auto fits as the number that it finds does, whatever the thr
   };
   const double found = error("auto");
   bool is_a_candidate = false;
-  for (int i = 0; i < 9; ++i) {
+  for (int i = 0; i < 13; ++i) {
     is_a_candidate =
         is_a_candidate || error(fmt::format("{:.17g}", std::pow(10.0, -3.0 + 0.5 * i))) == found;
   }
