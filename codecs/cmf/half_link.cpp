@@ -194,9 +194,9 @@ void HalfLink::update_map(const LaneVector& f, const LaneVector& others,
   Lanes* solved = of_half ? &maps.half[first] : &maps.difference[first];
   const std::size_t n_views = f.size() / light_weights.size();
   LaneVector left = signed_sum(maps);
-  LaneVector slopes(f.size());
   Update update(map_.texels());
   const bool any = sign == Sign::any;
+  LaneVector slopes(any ? f.size() : 0);
   for (std::size_t pair = 0; pair < f.size(); ++pair) {
     const auto w = static_cast<float>(light_weights[pair / n_views]);
     const Lanes y = with_difference_ ? looked_up(&held[first], held_lookup[pair]) : ones();
@@ -205,7 +205,7 @@ void HalfLink::update_map(const LaneVector& f, const LaneVector& others,
     for (int k = 0; k < lane_count; ++k) {
       const float slope = others[pair][k] * y[k];
       const float is = others[pair][k] * left[pair][k];
-      slopes[pair][k] = slope;
+      if (any) slopes[pair][k] = slope;
       left[pair][k] = f[pair][k] - is;
       top[k] = w * slope * (any ? left[pair][k] : f[pair][k]);
       bottom[k] = w * slope * (any ? slope : is);

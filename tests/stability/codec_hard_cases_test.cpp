@@ -175,7 +175,12 @@ TEST_CASE(
       {"dfmf", {"components_y=3", "components_u=2", "components_v=2"}},
       {"cmf", {"clusters=7"}},
       {"cmf", {"clusters=7", "clustering=tree", "metric=cosine", "rotate=false"}},
+      // Terms below zero over every direction.
+      {"cmf",
+       {"factors=light,half,difference,view", "terms=2", "bits=float", "clustered=false",
+        "levels=false", "resolution=16"}},
       {"hf", {"clusters=7", "resolution=16"}},
+      {"hf", {"clustered=false", "lambda=0.01", "resolution=16"}},
       {"hf", {"clustered=false", "lambda=auto", "resolution=16"}}};
   const Direction bright = named_directions("ubo81")[40];
   struct Hard {
