@@ -49,7 +49,7 @@ struct CodecBench {
   /// data counted in, over the raw data's bytes. 1: nothing but the raw data. Nothing where the
   /// system does not tell.
   std::optional<double> fit_memory;
-  /// Of lod 0, 0.5, 1, 2, ... to the coarsest; one where the codec has no levels.
+  /// Of lod 0, 0.5, 1, 2, ... to the tile as one texel; one where the codec has no levels.
   std::vector<LevelBench> levels;
 };
 

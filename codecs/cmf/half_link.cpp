@@ -177,9 +177,10 @@ LaneVector HalfLink::signed_sum(const HalfMaps& maps) const {
 
 void HalfLink::update(const LaneVector& f, const LaneVector& others,
                       std::span<const double> light_weights, Sign sign, HalfMaps& maps) const {
-  for (int of_half = 1; of_half >= (with_difference_ ? 0 : 1); --of_half) {
+  for (const bool of_half : {true, false}) {
+    if (!of_half && !with_difference_) break;
     for (int term = 0; term < (with_difference_ ? terms_ : 1); ++term) {
-      update_map(f, others, light_weights, sign, of_half != 0, term, maps);
+      update_map(f, others, light_weights, sign, of_half, term, maps);
     }
   }
 }

@@ -131,6 +131,7 @@ class Solver {
       for (int k = 0; k < lane_count; ++k)
         map[t][k] = static_cast<float>(std::exp(std::min(logarithm[t][k] - largest[k], 0.0)));
     }
+    // Looked up once more: kept for every pair, they take megabytes a thread.
     LaneVector samples(taps.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const DoubleLanes value = looked_up(logarithm, taps[i]);
