@@ -8,9 +8,15 @@
 #include <atomic>
 #include <bit>
 
+#include "btf/random.h"
+
 namespace weft {
 
 namespace {
+
+// Of what is certain all around, one packet of cells in so many is asked again.
+constexpr std::int64_t sparsely = 32;
+constexpr std::uint64_t sparse_key = 0x53504152;  // for the random numbers that choose it
 
 // From several threads at once; the order makes no difference.
 void add(std::uint16_t& bits, std::uint16_t more) {
@@ -36,6 +42,7 @@ VisibilityInquiry::VisibilityInquiry(const std::vector<Facet>& facets, const Lig
       cells_(std::move(cells)),
       corners_(std::move(corners)),
       wanted_(std::move(wanted)),
+      doubtful_(wanted_),
       around_(std::move(around)),
       groups_(lights.groups()),
       evidence_(cells_.size() * groups_) {}
@@ -53,7 +60,8 @@ VisibilityInquiry::Round VisibilityInquiry::ask(int round,
       [](const Round& a, const Round& b) { return a + b; });
 }
 
-// Sixteen cells in a row.
+// Sixteen cells in a row. Doubt sits where shadows end, a few cells wide; elsewhere further rays
+// would tell the same again.
 VisibilityInquiry::Round VisibilityInquiry::ask_packet(
     std::size_t first, int round, const std::vector<VisibilityAnswer>& answers) {
   const std::size_t count = std::min<std::size_t>(lanes, cells_.size() - first);
@@ -67,13 +75,16 @@ VisibilityInquiry::Round VisibilityInquiry::ask_packet(
     normals.y[i] = facet.normal.y;
     normals.z[i] = facet.normal.z;
   }
+  const bool chosen =
+      hash_coordinates(sparse_key, first, round) % static_cast<std::uint64_t>(sparsely) == 0;
+  const std::vector<std::uint16_t>& asked = chosen ? wanted_ : doubtful_;
   Round result;
   for (std::size_t g = 0; g < groups_; ++g) {
     unsigned any = 0;  // light that some cell asks for
     WordLanes asks{};  // of each cell
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t at = (first + i) * groups_ + g;
-      asks[i] = wanted_[at] & ~(evidence_[at].seen & evidence_[at].hidden);
+      asks[i] = asked[at] & ~(evidence_[at].seen & evidence_[at].hidden);
       any |= asks[i];
     }
     for (; any != 0; any &= any - 1) {
@@ -93,15 +104,16 @@ VisibilityInquiry::Round VisibilityInquiry::ask_packet(
         (visible ? evidence_[at].seen : evidence_[at].hidden) |= static_cast<std::uint16_t>(bit);
         ++result.rays;
         if ((answers[at].known & bit) == 0) continue;
-        ++result.certain;
-        result.contradicted += visible == ((answers[at].visible & bit) != 0) ? 0 : 1;
+        const std::int64_t stands_for = (doubtful_[at] & bit) != 0 ? 1 : sparsely;
+        result.certain += stands_for;
+        result.contradicted += visible == ((answers[at].visible & bit) != 0) ? 0 : stands_for;
       }
     }
   }
   return result;
 }
 
-void VisibilityInquiry::agree(std::vector<VisibilityAnswer>& answers) const {
+void VisibilityInquiry::agree(std::vector<VisibilityAnswer>& answers) {
   std::vector<VisibilityEvidence> around = around_;
   around.resize(corners_.count * groups_);
   tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t c) {
@@ -113,6 +125,7 @@ void VisibilityInquiry::agree(std::vector<VisibilityAnswer>& answers) const {
       }
     }
   });
+  std::vector<std::uint16_t> doubts(around.size());  // [corner][group]
   tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t c) {
     for (std::size_t g = 0; g < groups_; ++g) {
       VisibilityEvidence near;
@@ -126,6 +139,16 @@ void VisibilityInquiry::agree(std::vector<VisibilityAnswer>& answers) const {
       const unsigned others = ~unsigned{wanted_[at]};
       answers[at] = {static_cast<std::uint16_t>((answers[at].known & others) | visible | blocked),
                      static_cast<std::uint16_t>((answers[at].visible & others) | visible)};
+      const auto doubt = static_cast<std::uint16_t>(wanted_[at] & ~answers[at].known);
+      for (const std::uint32_t corner : corners_.of_cell[c])
+        add(doubts[corner * groups_ + g], doubt);
+    }
+  });
+  tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t c) {
+    for (std::size_t g = 0; g < groups_; ++g) {
+      unsigned near = 0;
+      for (const std::uint32_t corner : corners_.of_cell[c]) near |= doubts[corner * groups_ + g];
+      doubtful_[c * groups_ + g] = static_cast<std::uint16_t>(wanted_[c * groups_ + g] & near);
     }
   });
 }

@@ -33,17 +33,18 @@ class VisibilityInquiry {
 
   struct Round {
     std::int64_t rays = 0;
-    std::int64_t certain = 0;       ///< of them, those whose answer was certain before
+    std::int64_t certain = 0;       ///< answers that were certain before, as far as rays can tell
     std::int64_t contradicted = 0;  ///< of those
   };
 
   /// One ray from each cell to each wanted light in front of it, but where points of the cell
-  /// disagree already. `answers` ([cell][group]) are those so far.
+  /// disagree already. What `agree` found to be certain all around is asked of one packet in eight
+  /// only, which then stands for eight. `answers` ([cell][group]) are those so far.
   Round ask(int round, const std::vector<VisibilityAnswer>& answers);
 
   /// Writes the answers to the wanted lights: certain is what all points of a cell and of the cells
   /// that touch it agree on.
-  void agree(std::vector<VisibilityAnswer>& answers) const;
+  void agree(std::vector<VisibilityAnswer>& answers);
 
   const std::vector<Cell>& cells() const { return cells_; }
   const CellCorners& corners() const { return corners_; }
@@ -59,6 +60,7 @@ class VisibilityInquiry {
   std::vector<Cell> cells_;
   CellCorners corners_;
   std::vector<std::uint16_t> wanted_;
+  std::vector<std::uint16_t> doubtful_;  // [cell][group]: lights uncertain here or next to here
   std::vector<VisibilityEvidence> around_;
   std::size_t groups_;
   std::vector<VisibilityEvidence> evidence_;

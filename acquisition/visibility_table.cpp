@@ -145,7 +145,6 @@ void VisibilityTable::ask(VisibilityInquiry& inquiry, int most_rays, double shar
   for (int round = 0; round < most_rays; ++round) {
     const VisibilityInquiry::Round asked = inquiry.ask(round, answers);
     rays_ += asked.rays;
-    if (round + 1 < least_rays) continue;
     inquiry.agree(answers);
     const double contradicted = asked.certain > 0 ? static_cast<double>(asked.contradicted) /
                                                         static_cast<double>(asked.certain)

@@ -2,9 +2,10 @@
 //
 // Big facets are cut into cells. Of each cell a few points look towards each light; where they and
 // the cells around agree, the answer is nearly certain, and a path that meets the cell need not
-// trace. More points are asked until hardly any of them contradicts what was certain before. Cells
-// that stay uncertain of some light, mostly where a shadow ends, are cut finer and asked again. The
-// few answers that are wrong still are made good by `PathBlock`, which checks one in 256.
+// trace. More points are asked, mostly next to what is uncertain, until hardly any of them
+// contradicts what was certain before. Cells that stay uncertain of some light, mostly where a
+// shadow ends, are cut finer and asked again. The few answers that are wrong still are made good by
+// `PathBlock`, which checks one in 256.
 #pragma once
 
 #include <cstdint>

@@ -127,6 +127,18 @@ TEST_CASE("cells where shadows end are cut finer, where that pays") {
   check(TraceableStructure(test::rings(128, 16)));
 }
 
+TEST_CASE("what is certain all around is hardly asked again") {
+  const TraceableStructure checker(test::checker(64));
+  const LightSet lights(named_directions("ubo81"));
+  const FacetCells cells(checker.facets);
+  const int rounds = VisibilityTable::rays_to_refine - 1;
+  const VisibilityTable table(checker.facets, cells, lights, checker.scene, rounds);
+  const auto one_round = static_cast<double>(cells.count() * lights.size());
+  INFO(static_cast<double>(table.rays()) / one_round << " rays a cell and light");
+  CHECK(static_cast<double>(table.rays()) > 0.5 * one_round);
+  CHECK(static_cast<double>(table.rays()) < 1.7 * one_round);
+}
+
 TEST_CASE("every cell of a facet is reached, and its rim too") {
   const std::vector<Facet> facets = facets_of(test::flat(Rgb(1)).mesh);
   const LightSet lights({{0, 0, 1}});
