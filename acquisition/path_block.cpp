@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "tracer/sobol.h"
 
@@ -13,6 +14,9 @@ namespace {
 
 // One certain answer in so many is checked.
 constexpr std::uint32_t check_every = 256;
+// The same of rays that are certain to meet nothing. What such a ray brings where it does meet
+// something is added so many times, so that wrong answers must not be much rarer than checks.
+constexpr std::uint32_t check_open_every = 32;
 constexpr std::uint32_t most_samples = 64;      // of each texel in a wave
 constexpr std::uint32_t samples_a_check = 16;   // of each texel in a wave, where it may be the last
 constexpr std::uint64_t cell_key = 0x43454C4C;  // stands for a view where paths begin on cells
@@ -180,6 +184,9 @@ void PathBlock::flush(Coherence coherence) {
     path.facet = packet_.primitive[i];
     path.u = packet_.u[i];
     path.v = packet_.v[i];
+    if (path.hit_weight == 1) continue;
+    ++statistics_.open_wrong;
+    path.throughput *= std::exchange(path.hit_weight, 1.0F);
   }
   sent_count_ = 0;
 }
@@ -206,7 +213,7 @@ void PathBlock::follow_paths(bool from_surface) {
         add_indirect(path, vertex.indirect);
         continue;
       }
-      if (!last && scatter(path, vertex, bounce)) {
+      if (!last && scatter(path, vertex, bounce) && is_worth_tracing(path, vertex, bounce)) {
         ++statistics_.bounce_rays;
         send(path, origin, Coherence::incoherent);
       }
@@ -376,6 +383,16 @@ bool PathBlock::scatter(Path& path, const Vertex& vertex, int bounce) {
   }
   path.throughput *= sample.weight;
   return max_component(path.throughput) > 0;
+}
+
+bool PathBlock::is_worth_tracing(Path& path, const Vertex& vertex, int bounce) {
+  if (!tracer_.visibility().is_open(vertex.answers, path.direction)) return true;
+  ++statistics_.open_bounces;
+  const std::uint64_t bits = hash_coordinates(keys_[path.texel], check_pair(bounce), path.sample);
+  if (static_cast<std::uint32_t>(bits) % check_open_every != 0) return false;
+  ++statistics_.open_checked;
+  path.hit_weight = check_open_every;
+  return true;
 }
 
 void PathBlock::drop_settled(std::span<const double> error_scales, bool last) {

@@ -65,6 +65,7 @@ class PathBlock {
     float u, v;
     std::uint32_t texel;  // of the block
     std::uint32_t sample;
+    float hit_weight = 1;  // of what the ray meets: more where only some such rays are traced
   };
 
   // Where a path has arrived; z of the frame is the shading normal on the viewer's side.
@@ -107,6 +108,8 @@ class PathBlock {
   void trace_connections(ShadowQueue& queue, Coherence coherence);
   // Draws where a path goes on. False where it ends.
   bool scatter(Path& path, const Vertex& vertex, int bounce);
+  // False for most of the rays that would meet nothing, as the table is nearly certain.
+  bool is_worth_tracing(Path& path, const Vertex& vertex, int bounce);
   // Keeps the texels that need more samples.
   void drop_settled(std::span<const double> error_scales, bool last);
 

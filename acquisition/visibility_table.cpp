@@ -87,7 +87,7 @@ std::vector<VisibilityEvidence> evidence_around(const std::vector<Facet>& facets
 }  // namespace
 
 VisibilityTable::VisibilityTable(const LightSet& lights)
-    : groups_(lights.groups()), answers_(groups_) {
+    : groups_(lights.groups()), surrounding_(lights), answers_(groups_) {
   for (std::size_t g = 0; g < groups_; ++g)
     answers_[g].known = static_cast<std::uint16_t>(~lights.used_lanes(g));
 }

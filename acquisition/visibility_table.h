@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "acquisition/surrounding_lights.h"
 #include "acquisition/visibility_inquiry.h"
 
 namespace weft {
@@ -42,6 +43,16 @@ class VisibilityTable {
   /// On the other side nothing is known.
   const Answer* unknown() const { return &answers_[answers_.size() - groups_]; }
 
+  /// Whether a ray of this direction from a place with these answers is nearly certain to meet
+  /// nothing, as all lights around the direction are seen.
+  bool is_open(const Answer* answers, const Direction& direction) const {
+    const std::span<const SurroundingLights::Part> around = surrounding_.around(direction);
+    for (const auto& [group, lights] : around) {
+      if ((lights & ~answers[group].visible) != 0) return false;
+    }
+    return !around.empty();
+  }
+
   /// What asking took.
   std::int64_t rays() const { return rays_; }
 
@@ -62,6 +73,7 @@ class VisibilityTable {
            const std::vector<Answer>& fine_answers);
 
   std::size_t groups_;
+  SurroundingLights surrounding_;
   FacetCells cells_;
   std::vector<Rows> rows_;       // a cell
   std::vector<Answer> answers_;  // [row][group]; the last row knows nothing

@@ -205,14 +205,9 @@ Bsdf::ViewTerms Bsdf::view_terms(const Direction& view) const {
   return terms;
 }
 
-RgbLanes Bsdf::evaluate(const Vec3Lanes& lights, const ViewTerms& terms) const {
+RgbLanes Bsdf::evaluate_glossy(const Vec3Lanes& lights, const ViewTerms& terms) const {
   const FloatLanes zero{};
-  if (!(terms.view.z > 0)) return {zero, zero, zero};
   const IntLanes above = lights.z > 0;
-  if (kind_ == Kind::lambert) {
-    const FloatLanes cosine = select(above, lights.z, zero) * inverse_pi;
-    return {cosine * albedo_.x, cosine * albedo_.y, cosine * albedo_.z};
-  }
   Vec3Lanes half_vector{lights.x + terms.view.x, lights.y + terms.view.y, lights.z + terms.view.z};
   const FloatLanes inverse_length = 1 / square_root(dot(half_vector, half_vector));
   half_vector = {half_vector.x * inverse_length, half_vector.y * inverse_length,

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -41,7 +42,13 @@ class Bsdf {
   };
   ViewTerms view_terms(const Direction& view) const;
   /// `evaluate` for sixteen lights.
-  RgbLanes evaluate(const Vec3Lanes& lights, const ViewTerms& terms) const;
+  RgbLanes evaluate(const Vec3Lanes& lights, const ViewTerms& terms) const {
+    const FloatLanes zero{};
+    if (!(terms.view.z > 0)) return {zero, zero, zero};
+    if (kind_ != Kind::lambert) return evaluate_glossy(lights, terms);
+    const FloatLanes cosine = select(lights.z > 0, lights.z, zero) * std::numbers::inv_pi_v<float>;
+    return {cosine * albedo_.x, cosine * albedo_.y, cosine * albedo_.z};
+  }
 
   struct Sample {
     Direction light;
@@ -68,6 +75,7 @@ class Bsdf {
   std::shared_ptr<const AlbedoTable> table_;
   Rgb multiple_scattering_{0, 0, 0};
 
+  RgbLanes evaluate_glossy(const Vec3Lanes& lights, const ViewTerms& terms) const;
   Rgb fresnel(float cosine) const;
   RgbLanes fresnel(const FloatLanes& cosine) const;
 };

@@ -19,27 +19,27 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return __builtin_bswap32(x);
 }
 
-/// A random permutation of [0, 1) in base 2: keeps every elementary interval.
-constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
-  x = reverse_bits(x);
+/// A random permutation of [0, 1) in base 2 that keeps every elementary interval; of numbers whose
+/// bits are in reverse.
+constexpr std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3D20ADEAU;
   x += seed;
   x *= (seed >> 16) | 1U;
   x ^= x * 0x05526C56U;
   x ^= x * 0x53A22864U;
-  return reverse_bits(x);
+  return x;
 }
 
-/// Second dimension of Sobol's sequence (the first is `reverse_bits`). With the index as a
-/// polynomial p(s) over bits, its bits reversed are p(1 + s): halves are folded at every power of
-/// two.
-constexpr std::uint32_t sobol_second(std::uint32_t index) {
+/// Second dimension of Sobol's sequence, its bits in reverse (the first dimension's are the index).
+/// With the index as a polynomial p(s) over bits, these are p(1 + s): halves are folded at every
+/// power of two.
+constexpr std::uint32_t sobol_second_reversed(std::uint32_t index) {
   index ^= (index >> 1) & 0x55555555U;
   index ^= (index >> 2) & 0x33333333U;
   index ^= (index >> 4) & 0x0F0F0F0FU;
   index ^= (index >> 8) & 0x00FF00FFU;
   index ^= (index >> 16) & 0x0000FFFFU;
-  return reverse_bits(index);
+  return index;
 }
 
 /// Point `index` of the (0, 2)-sequence that `key` (a hash of all other coordinates) names; each in
@@ -47,10 +47,10 @@ constexpr std::uint32_t sobol_second(std::uint32_t index) {
 constexpr std::array<float, 2> sobol_point(std::uint32_t index, std::uint64_t key) {
   const auto low = static_cast<std::uint32_t>(key);
   const auto high = static_cast<std::uint32_t>(key >> 32);
-  const std::uint32_t shuffled = owen_scramble(index, low);
-  const std::uint32_t x = owen_scramble(reverse_bits(shuffled), high);
-  const std::uint32_t y =
-      owen_scramble(sobol_second(shuffled), static_cast<std::uint32_t>(mix_bits(key)));
+  const std::uint32_t shuffled = reverse_bits(owen_scramble_reversed(reverse_bits(index), low));
+  const std::uint32_t x = reverse_bits(owen_scramble_reversed(shuffled, high));
+  const std::uint32_t y = reverse_bits(owen_scramble_reversed(
+      sobol_second_reversed(shuffled), static_cast<std::uint32_t>(mix_bits(key))));
   return {static_cast<float>(x >> 8) * (1.0F / 16777216.0F),
           static_cast<float>(y >> 8) * (1.0F / 16777216.0F)};
 }

@@ -71,6 +71,18 @@ Mesostructure wires() {
   return test::structure(mesh, {Bsdf::lambert(Rgb(0.5F))}, 0.4F);
 }
 
+// A white square of 0.2 tiles, 0.15 above a white plane.
+Mesostructure roof() {
+  TriangleMesh mesh = test::flat(Rgb(1)).mesh;
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const auto& [x, y] : {std::pair{0.4F, 0.4F}, {0.6F, 0.4F}, {0.6F, 0.6F}, {0.4F, 0.6F}})
+    mesh.positions.emplace_back(x, y, 0.15F);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+  mesh.materials.insert(mesh.materials.end(), {0, 0});
+  return test::structure(mesh, {Bsdf::lambert(Rgb(1))}, 0.15F);
+}
+
 /// @param views  of the dataset: the more, the more rays make its table.
 ViewTracer tracer_of(const Mesostructure& structure, const TraceSettings& settings, bool table,
                      int views = 100'000) {
@@ -246,37 +258,97 @@ TEST_CASE("tracing with the table agrees with tracing without, texel by texel an
   CHECK(squares / compared < 1.1);
 }
 
-TEST_CASE("where the table is often wrong, the mean is right all the same", "[slow]") {
-  const TraceSettings settings{.width = 16, .height = 16, .spp = 256, .max_bounces = 0, .seed = 2};
-  constexpr int few_views = 1000;  // ten rays a cell and light: its cells are not cut finer
-  const ViewTracer with = tracer_of(wires(), settings, true, few_views);
-  const ViewTracer without = tracer_of(
-      wires(), {.width = 16, .height = 16, .spp = 128, .max_bounces = 0, .seed = 2}, false);
-  const Direction view(0, 0, 1);
-  constexpr int runs = 16;
-  std::vector<double> differences;
+namespace {
+
+// Of the sum of all values, traced with the table over that without; a mean of 16 runs.
+struct Mean {
+  std::vector<double> differences;  // of each run, relative
   double mean = 0;
-  std::int64_t wrong = 0;
-  std::int64_t checked = 0;
+  double standard_error = 0;
+  TraceStatistics statistics;  // with the table
+};
+
+Mean compare_means(const Mesostructure& structure, const std::vector<Direction>& lights,
+                   const TraceSettings& settings, const Direction& view) {
+  constexpr int runs = 16;
+  TraceSettings plain = settings;
+  plain.spp /= 2;
+  plain.table = false;
+  const ViewTracer with(structure, lights, settings);
+  const ViewTracer without(structure, lights, plain);
+  REQUIRE(with.visibility().rays() > 0);
   const auto sum = [](const TracedView& traced) {
     double total = 0;
     for (const float value : traced.values) total += value;
     return total / static_cast<double>(traced.values.size());
   };
+  Mean result;
   for (std::uint64_t run = 0; run < runs; ++run) {
     const TracedView a = with.trace(view, run);
     const double b = sum(without.trace(view, 100 + run));
-    differences.push_back(sum(a) / b - 1);
-    mean += differences.back() / runs;
-    wrong += a.statistics.wrong_answers;
-    checked += a.statistics.answers_checked;
+    result.differences.push_back(sum(a) / b - 1);
+    result.mean += result.differences.back() / runs;
+    result.statistics += a.statistics;
   }
-  const double rate = static_cast<double>(wrong) / static_cast<double>(checked);
   double variance = 0;
-  for (const double d : differences) variance += (d - mean) * (d - mean) / (runs - 1) / runs;
-  INFO(rate << " wrong; the mean is off by " << mean << " +- " << std::sqrt(variance));
+  for (const double d : result.differences)
+    variance += (d - result.mean) * (d - result.mean) / (runs - 1) / runs;
+  result.standard_error = std::sqrt(variance);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("where the table is often wrong, the mean is right all the same", "[slow]") {
+  // A thousand views: ten rays a cell and light, and its cells are not cut finer.
+  const Mean result = compare_means(
+      wires(), named_directions("fibonacci:36"),
+      {.width = 16, .height = 16, .spp = 256, .max_bounces = 0, .views = 1000, .seed = 2},
+      {0, 0, 1});
+  const double rate = static_cast<double>(result.statistics.wrong_answers) /
+                      static_cast<double>(result.statistics.answers_checked);
+  INFO(rate << " wrong; the mean is off by " << result.mean << " +- " << result.standard_error);
   CHECK(rate > 1e-3);
   // Uncorrected, the mean would be off by about the rate.
-  CHECK(std::sqrt(variance) < rate / 5);
-  CHECK(statistics::t_test(differences, 0) > 1e-3);
+  CHECK(result.standard_error < rate / 5);
+  CHECK(statistics::t_test(result.differences, 0) > 1e-3);
+}
+
+TEST_CASE("where rays to the open meet a roof between all lights, the mean is right all the same") {
+  // Eight lights all around at 60 degrees are seen from all of the ground, and a small roof from
+  // beneath hides what is between them.
+  std::vector<Direction> lights;
+  for (int i = 0; i < 8; ++i) lights.push_back(from_spherical(radians(60.0), radians(45.0 * i)));
+  const TraceSettings settings{
+      .width = 16, .height = 16, .spp = 1024, .max_bounces = 3, .views = 1000, .seed = 5};
+  const Mean result = compare_means(roof(), lights, settings, from_spherical(0.9, 0.3));
+  const auto open = static_cast<double>(result.statistics.open_bounces);
+  const double share = open / static_cast<double>(result.statistics.paths);
+  const double wrong = static_cast<double>(result.statistics.open_wrong) /
+                       static_cast<double>(result.statistics.open_checked);
+  INFO(share << " a path are open, " << wrong << " of them wrong; the mean is off by "
+             << result.mean << " +- " << result.standard_error);
+  CHECK(wrong > 0.03);
+  CHECK(share > 0.3);
+  // Uncorrected, the mean would be off by 1.4 %.
+  CHECK(result.standard_error < 5e-4);
+  CHECK(statistics::t_test(result.differences, 0) > 1e-3);
+}
+
+TEST_CASE("rays that the table takes to be open hardly ever meet anything") {
+  const auto rate_of = [](const Mesostructure& structure) {
+    const TraceSettings settings{.width = 32, .height = 32, .spp = 64, .max_bounces = 2, .seed = 1};
+    const TracedView traced =
+        tracer_of(structure, settings, true).trace(from_spherical(0.8, 2.0), 3);
+    const TraceStatistics& s = traced.statistics;
+    const auto asked = static_cast<double>(s.bounce_rays + s.open_bounces - s.open_checked);
+    INFO(s.open_bounces << " of " << asked << " open, " << s.open_checked << " traced, "
+                        << s.open_wrong << " of them met something");
+    CHECK(static_cast<double>(s.open_bounces) > 0.25 * asked);
+    CHECK(static_cast<double>(s.open_checked) > 0.8 / 32 * static_cast<double>(s.open_bounces));
+    CHECK(static_cast<double>(s.open_checked) < 1.2 / 32 * static_cast<double>(s.open_bounces));
+    CHECK(static_cast<double>(s.open_wrong) < 5e-3 * static_cast<double>(s.open_checked));
+  };
+  rate_of(test::checker(64));
+  rate_of(test::rings(128, 16));
 }
