@@ -24,6 +24,12 @@ Modes modes_parameter(const Settings& parameters) {
                     multivariate ? fmt::format("modes = {}", name) : "multivariate = false", found),
         "only modes = optimal has as many as asked for, and multivariate = false always one");
   }
+  modes.em_angles = parameters.flag("em_angles", false);
+  if (modes.em_angles && !modes.free) {
+    throw bad_input(parameters.where("em_angles"),
+                    fmt::format("em_angles = true, but the angles of modes = {} are fixed", name),
+                    "only modes = optimal has angles to move");
+  }
   return modes;
 }
 
@@ -56,6 +62,7 @@ FitOptions fit_options(const Settings& parameters) {
 
 std::string parameter_help() {
   return "bits = half               half | 8 | float: what the textures hold\n"
+         "em_angles = false         true: the initial guess moves the angles, too (the paper)\n"
          "filtering = values        between texels and levels, of B; numbers: of what is fitted, "
          "by "
          "the GPU's filter (wants smooth_weight)\n"
@@ -76,6 +83,7 @@ std::string parameter_help() {
 
 std::string to_json(const FitOptions& options) {
   return nlohmann::json{{"bits", name_of(options.storage)},
+                        {"em_angles", options.modes.em_angles},
                         {"filtering", name_of(options.filtering)},
                         {"iterations", options.iterations},
                         {"kernels", options.kernels},

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "btf/random.h"
+#include "codecs/srbf/angle_expectation.h"
 
 namespace weft::srbf {
 
@@ -13,9 +14,18 @@ namespace {
 constexpr int rounds = 12;
 
 struct Point {
-  std::array<Direction, most_modes> psi;
-  double weight;
+  Direction light;
+  Direction view;
+  double weight = 0;
+  std::array<Direction, most_modes> psi{};
 };
+
+void set_variables(std::vector<Point>& points, std::span<const double> angles) {
+  for (Point& point : points) {
+    for (std::size_t k = 0; k < angles.size(); ++k)
+      point.psi[k] = psi(angles[k], point.light, point.view);
+  }
+}
 
 // The data as a density: B, summed over the channels, where it is seen.
 std::vector<Point> points_of(const Samples& samples, std::span<const float> channels,
@@ -25,12 +35,12 @@ std::vector<Point> points_of(const Samples& samples, std::span<const float> chan
     if (samples.gain[i] == 0) continue;
     double weight = 0;
     for (std::size_t c = 0; c < 3; ++c) weight += channels[c * samples.count + i];
-    Point point{.psi = {}, .weight = std::max(weight, 0.0)};
-    const Direction light(samples.light[0][i], samples.light[1][i], samples.light[2][i]);
-    const Direction view(samples.view[0][i], samples.view[1][i], samples.view[2][i]);
-    for (std::size_t k = 0; k < angles.size(); ++k) point.psi[k] = psi(angles[k], light, view);
-    points.push_back(point);
+    points.push_back(
+        {.light = Direction(samples.light[0][i], samples.light[1][i], samples.light[2][i]),
+         .view = Direction(samples.view[0][i], samples.view[1][i], samples.view[2][i]),
+         .weight = std::max(weight, 0.0)});
   }
+  set_variables(points, angles);
   return points;
 }
 
@@ -69,24 +79,39 @@ struct Moments {
   double mass = 0;  // of the kernel itself over the samples
 };
 
-// Equation 3.9: shares of a sample, `values[j]` = F_j G_j.
-void share_out(const Point& point, std::span<const double> values, std::vector<Moments>& moments,
-               std::size_t modes) {
+// Equation 3.9: `values[j]` = F_j G_j become what the kernels have of the sample, T P_j.
+void share_out(const Point& point, std::span<double> values) {
   double total = 0;
   for (const double value : values) total += value;
-  if (!(total > 0)) return;
-  for (std::size_t j = 0; j < values.size(); ++j) {
-    const double weight = point.weight * values[j] / total;
-    moments[j].weight += weight;
+  for (double& value : values) value = total > 0 ? point.weight * value / total : 0;
+}
+
+void add_moments(const Point& point, std::span<const double> shares, std::size_t modes,
+                 std::vector<Moments>& moments) {
+  for (std::size_t j = 0; j < shares.size(); ++j) {
+    moments[j].weight += shares[j];
     for (std::size_t k = 0; k < modes; ++k) {
-      for (int c = 0; c < 3; ++c) moments[j].sum[k][c] += weight * point.psi[k][c];
+      for (int c = 0; c < 3; ++c) moments[j].sum[k][c] += shares[j] * point.psi[k][c];
     }
   }
 }
 
-// One round; `height` are the F_j of the mixture. The angles stay: equation 3.11 would turn every
-// mode to the half-way vector, where psi varies least (docs/codecs/srbf.md).
-void improve(const std::vector<Point>& points, Kernels& kernels, std::vector<double>& height) {
+// A sample's terms of equation 3.11.
+void add_expectations(const Point& point, std::span<const double> shares, const Kernels& kernels,
+                      std::span<AngleExpectation> expectations) {
+  for (std::size_t k = 0; k < expectations.size(); ++k) {
+    double pull[3] = {};  // NOLINT
+    for (std::size_t j = 0; j < shares.size(); ++j) {
+      for (int c = 0; c < 3; ++c) pull[c] += shares[j] * kernels.centre(j, k)[c];
+    }
+    expectations[k].add(pull, point.light, point.view);
+  }
+}
+
+// One round; `height` are the F_j of the mixture. `expectations`, where there are any, become those
+// of each mode's angle, with the centres as they were.
+void improve(const std::vector<Point>& points, Kernels& kernels, std::vector<double>& height,
+             std::span<AngleExpectation> expectations) {
   const Shape shape = kernels.shape();
   std::vector<Moments> moments(shape.kernels);
   std::vector<double> values(shape.kernels);
@@ -102,7 +127,9 @@ void improve(const std::vector<Point>& points, Kernels& kernels, std::vector<dou
       moments[j].mass += values[j];
       values[j] *= height[j];
     }
-    share_out(point, values, moments, shape.modes);
+    share_out(point, values);
+    add_moments(point, values, shape.modes, moments);
+    add_expectations(point, values, kernels, expectations);
   }
   for (std::size_t j = 0; j < shape.kernels; ++j) {
     const Moments& m = moments[j];
@@ -119,17 +146,32 @@ void improve(const std::vector<Point>& points, Kernels& kernels, std::vector<dou
   }
 }
 
+// A round that moves the angles, too.
+void improve_with_angles(std::vector<Point>& points, Kernels& kernels,
+                         std::vector<double>& height) {
+  std::vector<AngleExpectation> expectations(kernels.shape().modes);
+  improve(points, kernels, height, expectations);
+  for (std::size_t k = 0; k < expectations.size(); ++k)
+    kernels.angles()[k] = expectations[k].best_near(kernels.angles()[k]);
+  set_variables(points, kernels.angles());
+}
+
 }  // namespace
 
 Kernels initial_guess(const Samples& samples, std::span<const float> channels, Shape shape,
-                      std::span<const double> angles, std::uint64_t seed) {
+                      const Modes& modes, std::uint64_t seed) {
   Kernels kernels(shape);
-  std::ranges::copy(angles, kernels.angles().begin());
-  const std::vector<Point> points = points_of(samples, channels, angles);
+  std::ranges::copy(modes.angles, kernels.angles().begin());
+  std::vector<Point> points = points_of(samples, channels, modes.angles);
   if (points.empty()) return kernels;
   draw_centres(points, seed, kernels);
   std::vector<double> height(shape.kernels, 1.0);
-  for (int round = 0; round < rounds; ++round) improve(points, kernels, height);
+  for (int round = 0; round < rounds; ++round) {
+    if (modes.em_angles)
+      improve_with_angles(points, kernels, height);
+    else
+      improve(points, kernels, height, {});
+  }
   for (std::size_t k = 0; k < shape.modes; ++k) set_centre(kernels, 0, k, Direction(0, 0, 0));
   return kernels;
 }

@@ -13,11 +13,12 @@ namespace weft::srbf {
 /// Narrower kernels than this stay where they are, however bad the place: a start is broad.
 constexpr double broadest_start = 4;
 
-/// Centres and bandwidths, lambda <= `broadest_start`, for modes of these angles; colours are 0.
-/// The first kernel is a constant.
+/// Centres and bandwidths, lambda <= `broadest_start`, for modes of these angles, or, where
+/// `modes.em_angles`, angles too (equation 3.11), from these on; colours are 0. The first kernel is
+/// a constant.
 /// @param channels  as `channel_arrays`.
 /// @param seed      chooses the samples where the kernels' centres start.
 Kernels initial_guess(const Samples& samples, std::span<const float> channels, Shape shape,
-                      std::span<const double> angles, std::uint64_t seed);
+                      const Modes& modes, std::uint64_t seed);
 
 }  // namespace weft::srbf

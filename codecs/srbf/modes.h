@@ -41,6 +41,7 @@ struct Modes {
   std::vector<double> angles;
   bool free = false;
   bool multivariate = true;
+  bool em_angles = false;  ///< the initial guess moves them, too (equation 3.11)
 };
 
 /// `modes`: optimal | half-half-half | half-difference | half-light-view | in-out; `multivariate =

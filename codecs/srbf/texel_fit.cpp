@@ -118,7 +118,7 @@ TexelFit TexelFitter::from_scratch(int starts, const DescentLimits& limits) {
   std::ranges::copy(modes_.angles, constant.angles().begin());
   TexelFit best = as_it_is(std::move(constant));
   for (int i = 0; i < starts + 1 && !(best.value.total <= limits.enough); ++i) {
-    Kernels guess = i < starts ? initial_guess(samples_, channels_, shape_, modes_.angles,
+    Kernels guess = i < starts ? initial_guess(samples_, channels_, shape_, modes_,
                                                static_cast<std::uint64_t>(i))
                                : guess_of_peaks();
     TexelFit end = descend(as_it_is(std::move(guess)), limits, false);
