@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "btf/error.h"
 #include "btf/vector.h"
 #include "codecs/stencil_glsl.h"
 #include "images/image_file.h"
@@ -67,10 +66,15 @@ float stored_value(Storage storage, float value) {
 }
 
 float colour_scale(float largest) {
-  if (!std::isfinite(largest))
-    throw bad_input("BTF", "its values are so large that their fit is beyond a float's range");
   constexpr float held = 8192;
   return largest > 0 ? std::max(largest / held, std::numeric_limits<float>::min()) : 1;
+}
+
+Error beyond_float(const std::string& place) {
+  return bad_input(
+      "BTF", fmt::format("{}: values are so large that their fit is beyond a float's range", place),
+      "mend that texel, whose picture weft extract makes, or divide all data by a "
+      "power of ten");
 }
 
 GlTexture stored_texture(std::string name, Storage storage, const std::vector<float>& values) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "btf/error.h"
 #include "codecs/gl_program.h"
 #include "settings/settings.h"
 
@@ -25,9 +26,12 @@ float stored_value(Storage storage, float value);
 
 /// What a texture's colours are divided by, so that the largest is 8,192: then halfs hold sums of
 /// them up to seven times as large. 1 where all are 0; never less than a float holds in full.
-/// @param largest  of the colours' absolute values.
-/// @throws Error   bad_input where that is not finite.
+/// @param largest  of the colours' absolute values, finite.
 float colour_scale(float largest);
+
+/// What a fit is refused with whose numbers are more than a float holds.
+/// @param place  of the first of them, such as "view 3, texel (2, 0)".
+Error beyond_float(const std::string& place);
 
 /// A texture buffer of four values a texel.
 /// @param values  stored ones, a multiple of four.

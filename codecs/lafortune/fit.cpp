@@ -72,6 +72,11 @@ void store_texels(Model& model) {
   };
   float largest = 0;
   for (std::size_t i = 0; i < model.texels.size(); ++i) {
+    if (!std::isfinite(model.texels[i])) {
+      const std::size_t texel = i / stride;
+      const auto width = static_cast<std::size_t>(model.head.width);
+      throw beyond_float(fmt::format("texel ({}, {})", texel % width, texel / width));
+    }
     if (is_colour(i)) largest = std::max(largest, model.texels[i]);
   }
   model.scale = colour_scale(largest);

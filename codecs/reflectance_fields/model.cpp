@@ -1,5 +1,7 @@
 #include "codecs/reflectance_fields/model.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,11 +33,23 @@ Model empty_model(const Btf& btf, const std::string& codec, Kind kind, std::size
   return model;
 }
 
+namespace {
+
+std::string place_of(const Model& model, std::size_t field) {
+  const std::size_t texel = field % model.head.texels();
+  const auto width = static_cast<std::size_t>(model.head.width);
+  return fmt::format("view {}, texel ({}, {})", field / model.head.texels(), texel % width,
+                     texel / width);
+}
+
+}  // namespace
+
 void store_fields(Model& model) {
   const std::size_t stride = model.floats_a_field();
   const std::size_t first = is_rgb(model.kind) ? 0 : stride - 4;
   float largest = 0;
   for (std::size_t i = 0; i < model.fields.size(); ++i) {
+    if (!std::isfinite(model.fields[i])) throw beyond_float(place_of(model, i / stride));
     if (i % stride >= first) largest = std::max(largest, std::abs(model.fields[i]));
   }
   model.scale = colour_scale(largest);  // times four lobes of 1.2, 8,192 is still a half

@@ -1,11 +1,10 @@
 #include "codecs/srbf/model.h"
 
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "btf/error.h"
 
 namespace weft::srbf {
 
@@ -27,6 +26,15 @@ void lay_out(const Layout& layout, const Kernels& kernels, double colour_scale, 
     row[layout.angle_place(k)] = static_cast<float>(kernels.angles()[k]);
 }
 
+// Of a texel, counted over all levels.
+std::string place_of(const MipSizes& sizes, std::size_t texel) {
+  int level = 0;
+  while (level + 1 < sizes.levels() && texel >= sizes.first_texel(level + 1)) ++level;
+  const std::size_t at = texel - sizes.first_texel(level);
+  const auto width = static_cast<std::size_t>(sizes.width_of(level));
+  return fmt::format("mip level {}, texel ({}, {})", level, at % width, at / width);
+}
+
 }  // namespace
 
 std::string name_of(Filtering filtering) {
@@ -40,11 +48,10 @@ void Model::set_kernels(const std::vector<Kernels>& kernels, double colour_scale
     lay_out(layout(), kernels[texel], colour_scale, &values[texel * row()]);
   });
   for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) throw beyond_float(place_of(sizes(), i / row()));
     float& largest = scale[i % row()];
     largest = std::max(largest, std::abs(values[i]));
   }
-  if (!std::ranges::all_of(scale, [](float s) { return std::isfinite(s); }))
-    throw bad_input("BTF", "its values are so large that their fit is beyond a float's range");
   for (std::size_t i = 0; i < values.size(); ++i) {
     const float largest = scale[i % row()];
     values[i] = largest > 0 ? stored_value(storage, values[i] / largest) : 0;

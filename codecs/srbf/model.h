@@ -51,7 +51,7 @@ struct Model {
 
   /// Fills values and scale.
   /// @param kernels  of every texel, level 0 first; colours times `colour_scale` are 1/sr.
-  /// @throws Error   bad_input where that is beyond what a float holds.
+  /// @throws Error   bad_input that names the first texel of more than a float holds.
   void set_kernels(const std::vector<Kernels>& kernels, double colour_scale);
 };
 
