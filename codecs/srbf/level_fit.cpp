@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "codecs/srbf/kernel_order.h"
 
@@ -27,6 +28,12 @@ constexpr double colour_pull = 0.01;
 constexpr double promising = 1.05;
 
 constexpr int most_restarts = 2;
+
+// What fits are compared by: the less, the better. A start may be so bad that its error is no
+// number, which nothing compares with; any other is better.
+double misfit(const TexelFit& fit) {
+  return std::isnan(fit.value.total) ? std::numeric_limits<double>::infinity() : fit.value.total;
+}
 
 struct Workspace {
   TexelFitter fitter;
@@ -126,11 +133,11 @@ class LevelFit {
     Workspace& workspace = workspace_at(texel);
     workspace.fitter.set_pull(pulls.pull());
     TexelFit best = best_of(texel, workspace.fitter, starts, nullptr);
-    if (hints_.empty() || best.value.total <= DescentLimits{}.enough) return best;
+    if (hints_.empty() || misfit(best) <= DescentLimits{}.enough) return best;
     TexelFit other = workspace.fitter.descend(
         workspace.fitter.as_it_is(in_order_of(parents_[own], hints_[texel])),
         {.iterations = options_.iterations});
-    if (!(other.value.total < best.value.total)) return best;
+    if (!(misfit(other) < misfit(best))) return best;
     restarted_[texel] = 1;
     return other;
   }
@@ -178,15 +185,14 @@ class LevelFit {
     TexelFit best =
         now != nullptr ? fitter.descend(*now, limits) : fitter.descend(begun[0], limits);
     const std::size_t first_other = now != nullptr ? 0 : 1;
-    std::stable_sort(
-        begun.begin() + static_cast<std::ptrdiff_t>(first_other), begun.end(),
-        [](const TexelFit& a, const TexelFit& b) { return a.value.total < b.value.total; });
+    std::stable_sort(begun.begin() + static_cast<std::ptrdiff_t>(first_other), begun.end(),
+                     [](const TexelFit& a, const TexelFit& b) { return misfit(a) < misfit(b); });
     for (std::size_t i = first_other;
          i < std::min<std::size_t>(begun.size(), first_other + most_restarts); ++i) {
-      const double bound = now != nullptr ? promising * best.value.total : begun[0].value.total;
-      if (!(begun[i].value.total < bound) || best.value.total <= limits.enough) break;
+      const double bound = now != nullptr ? promising * misfit(best) : misfit(begun[0]);
+      if (!(misfit(begun[i]) < bound) || misfit(best) <= limits.enough) break;
       TexelFit other = fitter.descend(begun[i], limits);
-      if (!(other.value.total < best.value.total)) continue;
+      if (!(misfit(other) < misfit(best))) continue;
       best = std::move(other);
       restarted_[texel] = 1;
     }

@@ -10,7 +10,7 @@
 #include "btf/random.h"
 #include "codecs/reflectance_fields/model.h"
 #include "codecs/sample_error.h"
-#include "codecs/srbf/model.h"
+#include "codecs/srbf/level_fit.h"
 #include "tests/codecs/synthetic_btf.h"
 
 using namespace weft;
@@ -87,4 +87,26 @@ TEST_CASE("A fit that no float holds names the texel, and what to do") {
     CHECK_NOTHROW(model.set_kernels(kernels, 1e10));
     expect_named(place, [&] { model.set_kernels(kernels, 1e20); });
   }
+}
+
+TEST_CASE("SRBF: a parent whose error is no number gives way to any that is one") {
+  using namespace weft::srbf;
+  const auto btf = realistic_btf(4, "regular:3x6");
+  const MipLevels data(*btf);
+  const Samples samples(btf->views(), btf->lights(), Quantity::radiance);
+  FitOptions options;
+  options.kernels = 4;
+  options.modes = modes_named("half-light-view", 3, true);
+  options.iterations = 20;
+  options.sweeps = 0;
+  Progress silent;
+  const LevelResult top = fit_level(data, samples, options, 2, {}, {}, 1, silent);
+  std::vector<Kernels> parents =
+      fit_level(data, samples, options, 1, top.kernels, {}, 1, silent).kernels;
+  const auto squared_error = [&] {
+    return fit_level(data, samples, options, 0, parents, {}, 1, silent).squared_error;
+  };
+  const double usual = squared_error();
+  parents[3].centre(1, 0)[0] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(squared_error() < 2 * usual);
 }
