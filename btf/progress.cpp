@@ -48,6 +48,11 @@ void Progress::note(std::string text) {
   note_ = std::move(text);
 }
 
+std::string Progress::noted() const {
+  const std::scoped_lock lock(mutex_);
+  return note_;
+}
+
 void Progress::report(const std::string& name, double value) {
   const std::scoped_lock lock(mutex_);
   reported_[name] = value;

@@ -32,6 +32,8 @@ class Progress {
   void advance(std::int64_t steps, std::int64_t work = 0);
   /// Shown at the end of the line from now on: the error so far. Thread-safe.
   void note(std::string text);
+  /// What was noted last, since the stage began.
+  std::string noted() const;
   /// Clears the line; also done by the destructor.
   void finish();
 
