@@ -84,15 +84,15 @@ std::unique_ptr<Representation> one_lobe(const Direction& axis, float peak, floa
 
 TEST_CASE("Two lobes come back from values that are made of them") {
   const LightTable lights(HemisphereSampling(named_directions("ubo81")));
+  int tried = 0;
   int recovered = 0;
   constexpr int cases = 60;
   for (std::uint64_t i = 0; i < cases; ++i) {
     LobeSum truth = random_lobes(i);
     const std::vector<double> values = normalised_values(lights, truth);
-    if (truth.lobe[0].peak > largest_peak || truth.lobe[1].peak > largest_peak) {
-      ++recovered;  // outside what the fit may find
-      continue;
-    }
+    // A narrow lobe between the lights may be higher than a fit makes any.
+    if (truth.lobe[0].peak > largest_peak || truth.lobe[1].peak > largest_peak) continue;
+    ++tried;
     const FieldFit found = fit_field(lights, values, 2);
     const bool swapped =
         angle(found.lobes.lobe[0], truth.lobe[0]) > angle(found.lobes.lobe[1], truth.lobe[0]);
@@ -105,7 +105,8 @@ TEST_CASE("Two lobes come back from values that are made of them") {
     }
     recovered += is_near ? 1 : 0;
   }
-  CHECK(recovered == cases);
+  CHECK(tried > 0.8 * cases);
+  CHECK(recovered == tried);
 }
 
 namespace {

@@ -134,10 +134,17 @@ TEST_CASE("SRBF: the gradient is what central differences say") {
       Kernels kernels = some_kernels(shape, 6);
       std::vector<double> gradient(shape.unknowns());
       objective(kernels, gradient, true);
-      double largest = 0;
-      for (const double g : gradient) largest = std::max(largest, std::abs(g));
+      // Angles move all centres at once: their derivatives are the larger ones. Sums are of floats:
+      // where steps are shorter than these, rounding shows (4e-3: up to 2e-3 of the largest), where
+      // they are longer, the fifth derivative.
+      double of_centres = 0;
+      double of_angles = 0;
       for (std::size_t i = 0; i < shape.unknowns(); ++i) {
-        const double step = 4e-3;
+        double& largest = i < shape.centres() ? of_centres : of_angles;
+        largest = std::max(largest, std::abs(gradient[i]));
+      }
+      for (std::size_t i = 0; i < shape.unknowns(); ++i) {
+        const double step = 2e-2;
         const auto at = [&](double offset) {
           Kernels moved = kernels;
           moved.values()[i] += offset;
@@ -146,7 +153,8 @@ TEST_CASE("SRBF: the gradient is what central differences say") {
         const double difference =
             (8 * (at(step) - at(-step)) - (at(2 * step) - at(-2 * step))) / (12 * step);
         INFO("modes " << modes << ", unknown " << i);
-        CHECK(std::abs(gradient[i] - difference) < 6e-3 * largest);
+        const double largest = i < shape.centres() ? of_centres : of_angles;
+        CHECK(std::abs(gradient[i] - difference) < 1.5e-3 * largest);
       }
     }
   }
