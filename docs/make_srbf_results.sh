@@ -2,6 +2,7 @@
 # Makes the tables of docs/results/srbf.md: tables 4.1 to 4.4 and figures 4.1 and 4.3 of paper 001 on checker, rings
 # and tissue. Usage: docs/make_srbf_results.sh FOLDER [TEXELS]
 # FOLDER keeps data and fits, and a second run goes on with them; TEXELS (16) a side. Needs jq (Debian: jq).
+# shellcheck disable=SC2016  # backquotes below are the page's
 set -euo pipefail
 
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -51,7 +52,32 @@ picture_error() { # NAME LABEL
     "$weft" compare "$folder/$1-data.exr" "$folder/$1-$2.exr" --json >"$folder/$1-$2.picture.json"
 }
 
+# Pictures of the whole tile between the texels' centres, five pixels a texel, at some of the measured pairs: the
+# errors of all of them over the mean of what the data show.
+pairs=("0,0 45,40" "30,60 60,252" "30,240 15,300" "45,140 45,200" "60,90 30,120")
+tile() { # NAME FOLDER: the pictures of a dataset
+  local i
+  [[ -f $folder/$1.tile.json ]] && return
+  for i in "${!pairs[@]}"; do
+    read -r view light <<<"${pairs[i]}"
+    "$weft" extract "$2" --view "$view" --light "$light" --size "$((5 * texels))x$((5 * texels))" \
+      -o "$folder/$1-tile$i.exr" --json
+  done | jq -s '[.[].mean | add / 3] | add / length' >"$folder/$1.tile.new"
+  mv "$folder/$1.tile.new" "$folder/$1.tile.json"
+}
+between_texels() { # NAME LABEL
+  local i
+  [[ -f $folder/$1-$2.between.json ]] && return
+  tile "$1-$2" "$folder/$1-$2.srbf"
+  for i in "${!pairs[@]}"; do
+    "$weft" compare "$folder/$1-tile$i.exr" "$folder/$1-$2-tile$i.exr" --json
+  done | jq -s --slurpfile mean "$folder/$1.tile.json" '([.[].rmse | . * .] | add / length | sqrt) / $mean[0]' \
+    >"$folder/$1-$2.between.new"
+  mv "$folder/$1-$2.between.new" "$folder/$1-$2.between.json"
+}
+
 labels=(optimal half-light-view half-half-half half-difference in-out univariate)
+pulled=(optimal pull-0.001 terms-optimal smooth pull-0.1)
 for btf in checker rings tissue; do
   acquire "$btf"
   for label in "${labels[@]}"; do
@@ -60,7 +86,21 @@ for btf in checker rings tissue; do
     fit "$btf" "$label" "$set"
   done
   fit "$btf" j10 kernels=10
+  fit "$btf" em-angles em_angles=true
+  for label in optimal half-light-view half-half-half; do
+    fit "$btf" "terms-$label" "modes=$label" mip_weight=0.01 smooth_weight=0.01 robust=false
+  done
+  fit "$btf" terms-robust mip_weight=0.01 smooth_weight=0.01
   fit "$btf" smooth smooth_weight=0.01 mip_weight=0.01 robust=false sweeps=3
+  for weight in 0.001 0.1; do
+    fit "$btf" "pull-$weight" "smooth_weight=$weight" "mip_weight=$weight" robust=false
+  done
+  tile "$btf" "$folder/$btf.btf"
+  for label in "${pulled[@]}"; do
+    by_numbers "$btf" "$label"
+    between_texels "$btf" "$label"
+    between_texels "$btf" "$label-numbers"
+  done
   preview "$btf" data "$folder/$btf.btf"
   for label in optimal j10 smooth; do
     by_numbers "$btf" "$label"
@@ -70,10 +110,10 @@ for btf in checker rings tissue; do
     done
   done
 done
-# Free angles fit each level with fixed ones first; fixed modes get three sweeps more instead.
+# Optimal fits each level with fixed angles, too; what it is compared with gets three sweeps more.
 for btf in checker rings tissue; do
   fit "$btf" converged-optimal iterations=300
-  fit "$btf" converged-univariate multivariate=false iterations=300
+  fit "$btf" converged-univariate multivariate=false iterations=300 sweeps=4
   for label in half-light-view half-half-half half-difference; do
     fit "$btf" "converged-$label" "modes=$label" iterations=300 sweeps=4
   done
@@ -85,6 +125,7 @@ fit tissue bits8 bits=8
 value() { jq -r "$2" "$folder/$1"; }
 levels() { jq -r '[.report.levels[].relative_rmse * 1000 | round / 10] | map(tostring) | join(" | ")' "$folder/$1.srbf/codec.json"; }
 frames() { value "$1.fps.json" '10000 / .panes[0].best_ms | round / 10'; }
+between() { value "$1.between.json" '. * 1000 | round / 10'; }
 picture() { value "$1.picture.json" '.relative_rmse * 1000 | round / 10'; }
 percent='(.relative_rmse * 1000 | round / 10)'
 
@@ -110,6 +151,10 @@ tables() {
       echo "| $btf | $label | $(levels "$btf-$label") | $(value "$btf-$label.json" "$percent") | $(below "$btf-optimal" "$btf-$label") % |"
     done
   done
+  terms
+  reflectance
+  guess "$count"
+  pulls
   printf '\n### Preview (table 4.4)\n\n200 x 200 pixels by %s, frames a second by the fastest of 15 frames, and the picture'"'"'s RMSE over the mean of what the data themselves show.\n\n' \
     "$(value tissue-data.fps.json .gpu)"
   printf '| scene | kernels | values blended | error, %% | numbers blended | error, %% |\n|---|---|---|---|---|---|\n'
@@ -122,6 +167,63 @@ tables() {
   done
 }
 
+terms() {
+  local btf label
+  printf '\n### With the paper'"'"'s terms (figure 4.3)\n\nThe same with the mipmap constraint and the smoothness term on, both of weight 0.01, as squares (`robust = false`) and for optimal robust, too: relative RMSE in %% of level 0 in halfs, and how far optimal is below.\n\n'
+  echo "| BTF | optimal | half-light-view | | half-half-half | | optimal, robust |"
+  echo "|---|---|---|---|---|---|---|"
+  for btf in checker rings tissue; do
+    printf '| %s | %s |' "$btf" "$(value "$btf-terms-optimal.json" "$percent")"
+    for label in half-light-view half-half-half; do
+      printf ' %s | %s %% |' "$(value "$btf-terms-$label.json" "$percent")" "$(below "$btf-terms-optimal" "$btf-terms-$label")"
+    done
+    printf ' %s |\n' "$(value "$btf-terms-robust.json" "$percent")"
+  done
+}
+
+reflectance() {
+  local btf label
+  printf '\n### In reflectance (figures 4.4 to 4.6)\n\nRMSE of level 0 in halfs over all directions as reflectance, pi B, which is 1 for a white diffuse surface; `terms` as above.\n\n'
+  echo "| BTF | optimal | half-light-view | optimal, terms | half-light-view, terms |"
+  echo "|---|---|---|---|---|"
+  for btf in checker rings tissue; do
+    printf '| %s |' "$btf"
+    for label in optimal half-light-view terms-optimal terms-half-light-view; do
+      printf ' %s |' "$(value "$btf-$label.json" '.rmse * 3.14159265 * 10000 | round / 10000')"
+    done
+    echo
+  done
+}
+
+guess() { # LEVELS
+  local btf label
+  printf '\n### Initial guess\n\nRelative RMSE in %% of each mip level, by angles in the initial guess: held, or moved by expectation and maximisation (equation 3.11, `em_angles = true`). Both are free in the descents that follow.\n\n'
+  echo "| BTF | angles in the guess | $(seq -s ' | ' 0 $(($1 - 1))) |"
+  echo "|---|---|$(for ((i = 0; i < $1; ++i)); do printf -- '---|'; done)"
+  for btf in checker rings tissue; do
+    for row in "optimal held" "em-angles moved"; do
+      read -r label words <<<"$row"
+      echo "| $btf | $words | $(levels "$btf-$label") |"
+    done
+  done
+}
+
+pulls() {
+  local btf row label words
+  printf '\n### Pulls, and what is blended\n\nWith `smooth_weight` and `mip_weight` of that weight, `robust = false`: relative RMSE in %% of level 0 at the texels'"'"' centres, in halfs; and, at %s of the measured pairs of directions, RMSE over the mean of pictures of %s x %s pixels, with values blended and with numbers blended.\n\n' \
+    "${#pairs[@]}" "$((5 * texels))" "$((5 * texels))"
+  echo "| weight | tissue: centres | values | numbers | rings: centres | values | numbers | checker: centres | values | numbers |"
+  echo "|---|---|---|---|---|---|---|---|---|---|"
+  for row in "optimal none" "pull-0.001 0.001" "terms-optimal 0.01" "smooth 0.01, \`sweeps = 3\`" "pull-0.1 0.1"; do
+    read -r label words <<<"$row"
+    printf '| %s |' "$words"
+    for btf in tissue rings checker; do
+      printf ' %s | %s | %s |' "$(value "$btf-$label.json" "$percent")" "$(between "$btf-$label")" "$(between "$btf-$label-numbers")"
+    done
+    echo
+  done
+}
+
 # How far, in %, one fit's error is below another's.
 below() { # NAME OTHER
   jq -n --slurpfile a "$folder/$1.json" --slurpfile b "$folder/$2.json" \
@@ -130,7 +232,7 @@ below() { # NAME OTHER
 
 converged() {
   local btf label
-  printf '\n### Converged\n\nRelative RMSE in %% of level 0 in halfs after 300 iterations a descent, and how far optimal is below. Fixed modes have three sweeps more.\n\n'
+  printf '\n### Converged\n\nRelative RMSE in %% of level 0 in halfs after 300 iterations a descent, and how far optimal is below. All but optimal have three sweeps more.\n\n'
   echo "| BTF | optimal | half-light-view | | half-half-half | | half-difference | | univariate | |"
   echo "|---|---|---|---|---|---|---|---|---|---|"
   for btf in checker rings tissue; do
