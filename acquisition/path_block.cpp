@@ -14,9 +14,10 @@ namespace {
 
 // One certain answer in so many is checked.
 constexpr std::uint32_t check_every = 256;
-// The same of rays that are certain to meet nothing. What such a ray brings where it does meet
-// something is added so many times, so that wrong answers must not be much rarer than checks.
-constexpr std::uint32_t check_open_every = 32;
+// The same of rays that are certain to meet nothing. What such a ray meets after all counts so many
+// times: checks as rare as those above would add much noise where wrong answers are frequent, and
+// save little more (docs/acquisition.md).
+constexpr std::uint32_t check_open_every = 4;
 constexpr std::uint32_t most_samples = 64;      // of each texel in a wave
 constexpr std::uint32_t samples_a_check = 16;   // of each texel in a wave, where it may be the last
 constexpr std::uint64_t cell_key = 0x43454C4C;  // stands for a view where paths begin on cells
@@ -184,9 +185,10 @@ void PathBlock::flush(Coherence coherence) {
     path.facet = packet_.primitive[i];
     path.u = packet_.u[i];
     path.v = packet_.v[i];
-    if (path.hit_weight == 1) continue;
-    ++statistics_.open_wrong;
-    path.throughput *= std::exchange(path.hit_weight, 1.0F);
+    if (path.hit_weight > 1) {
+      ++statistics_.open_wrong;
+      path.throughput *= std::exchange(path.hit_weight, 1.0F);
+    }
   }
   sent_count_ = 0;
 }
@@ -213,10 +215,11 @@ void PathBlock::follow_paths(bool from_surface) {
         add_indirect(path, vertex.indirect);
         continue;
       }
-      if (!last && scatter(path, vertex, bounce) && is_worth_tracing(path, vertex, bounce)) {
-        ++statistics_.bounce_rays;
-        send(path, origin, Coherence::incoherent);
-      }
+      if (last || !scatter(path, vertex, bounce)) continue;
+      path.hit_weight = weight_of_hit(path, vertex, bounce);
+      if (path.hit_weight == 0) continue;
+      ++statistics_.bounce_rays;
+      send(path, origin, Coherence::incoherent);
     }
     flush(Coherence::incoherent);
     if (bounce == 0) trace_connections(first_connections_, Coherence::coherent);
@@ -385,14 +388,13 @@ bool PathBlock::scatter(Path& path, const Vertex& vertex, int bounce) {
   return max_component(path.throughput) > 0;
 }
 
-bool PathBlock::is_worth_tracing(Path& path, const Vertex& vertex, int bounce) {
-  if (!tracer_.visibility().is_open(vertex.answers, path.direction)) return true;
+float PathBlock::weight_of_hit(const Path& path, const Vertex& vertex, int bounce) {
+  if (!tracer_.visibility().is_open(vertex.answers, path.direction)) return 1;
   ++statistics_.open_bounces;
   const std::uint64_t bits = hash_coordinates(keys_[path.texel], check_pair(bounce), path.sample);
-  if (static_cast<std::uint32_t>(bits) % check_open_every != 0) return false;
+  if (static_cast<std::uint32_t>(bits) % check_open_every != 0) return 0;
   ++statistics_.open_checked;
-  path.hit_weight = check_open_every;
-  return true;
+  return check_open_every;
 }
 
 void PathBlock::drop_settled(std::span<const double> error_scales, bool last) {

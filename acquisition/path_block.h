@@ -3,7 +3,8 @@
 // A wave holds some samples of all the block's texels. Its paths meet the surface, are connected to
 // every light at once, and go on together. Where the visibility table is certain, it
 // answers for the light; one such answer in 256 is traced all the same, and where it was wrong, the
-// difference is added 256 times: so the mean is that of tracing everything.
+// difference is added 256 times: so the mean is that of tracing everything. The same goes, with 4,
+// for bounces that are certain to meet nothing.
 #pragma once
 
 #include <array>
@@ -108,8 +109,9 @@ class PathBlock {
   void trace_connections(ShadowQueue& queue, Coherence coherence);
   // Draws where a path goes on. False where it ends.
   bool scatter(Path& path, const Vertex& vertex, int bounce);
-  // False for most of the rays that would meet nothing, as the table is nearly certain.
-  bool is_worth_tracing(Path& path, const Vertex& vertex, int bounce);
+  // Of what the ray that goes on meets: 0, not to be traced, for most of those of which the table
+  // is nearly certain that they meet nothing, and more than 1 for the others of these.
+  float weight_of_hit(const Path& path, const Vertex& vertex, int bounce);
   // Keeps the texels that need more samples.
   void drop_settled(std::span<const double> error_scales, bool last);
 

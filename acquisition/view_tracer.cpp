@@ -76,6 +76,26 @@ VisibilityTable table_for(const std::vector<Facet>& facets, const LightSet& ligh
   return {facets, std::move(cells), lights, scene, static_cast<int>(std::min(rays, 1e3))};
 }
 
+std::vector<Direction> checked(std::vector<Direction> lights) {
+  if (lights.empty()) throw bad_input("lights", "are none; expected at least one");
+  check_elevations(lights, "light");
+  return lights;
+}
+
+TraceSettings checked(const TraceSettings& s) {
+  if (s.spp < 1) throw bad_input("--spp", fmt::format("is {}; expected at least 1", s.spp));
+  if (s.width < 1 || s.height < 1) {
+    throw bad_input("--texels", fmt::format("is {} x {}; expected at least 1", s.width, s.height));
+  }
+  if (s.error < 0) throw bad_input("--error", fmt::format("is {}; expected at least 0", s.error));
+  if ((s.error > 0 || s.texel_errors) && s.spp < 2)
+    throw bad_input("--spp", "is 1; expected at least 2, from whose spread an error can be told");
+  if (s.max_bounces < 0) {
+    throw bad_input("--max-bounces", fmt::format("is {}; expected at least 0", s.max_bounces));
+  }
+  return s;
+}
+
 }  // namespace
 
 TraceableStructure::TraceableStructure(Mesostructure structure)
@@ -91,25 +111,9 @@ ViewTracer::ViewTracer(Mesostructure mesostructure, std::vector<Direction> light
 ViewTracer::ViewTracer(std::shared_ptr<const TraceableStructure> structure,
                        std::vector<Direction> lights, TraceSettings settings)
     : structure_(std::move(structure)),
-      lights_(std::move(lights)),
-      settings_(settings),
+      lights_(checked(std::move(lights))),
+      settings_(checked(settings)),
       visibility_(table_for(facets(), lights_, scene(), settings_)) {
-  check_elevations(lights_.directions(), "light");
-  if (settings_.spp < 1)
-    throw bad_input("--spp", fmt::format("is {}; expected at least 1", settings_.spp));
-  if (settings_.width < 1 || settings_.height < 1) {
-    throw bad_input("--texels", fmt::format("is {} x {}; expected at least 1", settings_.width,
-                                            settings_.height));
-  }
-  if (lights_.size() == 0) throw bad_input("lights", "are none; expected at least one");
-  if (settings_.error < 0)
-    throw bad_input("--error", fmt::format("is {}; expected at least 0", settings_.error));
-  if ((settings_.error > 0 || settings_.texel_errors) && settings_.spp < 2)
-    throw bad_input("--spp", "is 1; expected at least 2, from whose spread an error can be told");
-  if (settings_.max_bounces < 0) {
-    throw bad_input("--max-bounces",
-                    fmt::format("is {}; expected at least 0", settings_.max_bounces));
-  }
   if (settings_.indirect_cache && settings_.max_bounces > 0) indirect_cache_ = IndirectCache(*this);
 }
 

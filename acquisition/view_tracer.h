@@ -58,7 +58,8 @@ struct TraceStatistics {
   std::int64_t paths = 0;
   std::int64_t primary_rays = 0;
   std::int64_t bounce_rays = 0;
-  std::int64_t open_bounces = 0;  ///< that the table is certain would meet nothing
+  /// Bounces, not of the cache's paths, that the table is certain would meet nothing.
+  std::int64_t open_bounces = 0;
   std::int64_t open_checked = 0;  ///< of those, the traced ones
   std::int64_t open_wrong = 0;    ///< of these, those that did meet something
   std::int64_t shadow_rays = 0;

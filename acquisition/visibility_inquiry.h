@@ -33,13 +33,13 @@ class VisibilityInquiry {
 
   struct Round {
     std::int64_t rays = 0;
-    std::int64_t certain = 0;       ///< answers that were certain before, as far as rays can tell
-    std::int64_t contradicted = 0;  ///< of those
+    std::int64_t certain = 0;       ///< answers that were certain before, estimated from the rays
+    std::int64_t contradicted = 0;  ///< of those, the same
   };
 
   /// One ray from each cell to each wanted light in front of it, but where points of the cell
-  /// disagree already. What `agree` found to be certain all around is asked of one packet in eight
-  /// only, which then stands for eight. `answers` ([cell][group]) are those so far.
+  /// disagree already. What `agree` found to be certain all around is asked of one packet in 32
+  /// only, which then stands for 32. `answers` ([cell][group]) are those so far.
   Round ask(int round, const std::vector<VisibilityAnswer>& answers);
 
   /// Writes the answers to the wanted lights: certain is what all points of a cell and of the cells

@@ -11,32 +11,33 @@ namespace {
 
 // Rays are enough once fewer than this share of all queries would contradict what was certain.
 constexpr double rare = 2e-6;
-constexpr std::size_t most_refined_bytes = 128'000'000;  // of answers; asking takes twice as much
+constexpr std::size_t most_refined_bytes =
+    128'000'000;  // of answers; asking takes three times as much
 
 // Lights that face the cell, and of which it is not certain.
-std::uint16_t open_lights(const VisibilityEvidence& evidence, const VisibilityAnswer& answer) {
+std::uint16_t uncertain_lights(const VisibilityEvidence& evidence, const VisibilityAnswer& answer) {
   return static_cast<std::uint16_t>((evidence.seen | evidence.hidden) & ~answer.known);
 }
 
 // What is uncertain once all cells have been asked.
 struct Uncertain {
-  std::vector<std::uint16_t> open;   // [cell][group]: lights
-  std::vector<std::uint32_t> cells;  // with any of them, in order
-  double share = 0;                  // of what these cells leave open, of all queries
+  std::vector<std::uint16_t> lights;  // [cell][group]
+  std::vector<std::uint32_t> cells;   // with any of them, in order
+  double share = 0;                   // of what these cells are uncertain of, of all queries
 };
 
-// Where there are more than `most` such cells, those with most lights open.
+// Where there are more than `most` such cells, those with most of them.
 Uncertain uncertain_cells(const VisibilityInquiry& inquiry,
                           const std::vector<VisibilityAnswer>& answers, std::size_t groups,
                           std::size_t most) {
   const std::vector<VisibilityEvidence>& evidence = inquiry.evidence();
   Uncertain result;
-  result.open.resize(evidence.size());
+  result.lights.resize(evidence.size());
   std::vector<int> lights(inquiry.cells().size());
   double faced = 0;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
-    result.open[i] = open_lights(evidence[i], answers[i]);
-    lights[i / groups] += std::popcount(result.open[i]);
+    result.lights[i] = uncertain_lights(evidence[i], answers[i]);
+    lights[i / groups] += std::popcount(result.lights[i]);
     faced += std::popcount(unsigned{evidence[i].seen} | evidence[i].hidden);
   }
   for (std::uint32_t c = 0; c < lights.size(); ++c) {
@@ -74,7 +75,7 @@ std::vector<VisibilityEvidence> evidence_around(const std::vector<Facet>& facets
       if (!corner) continue;
       for (std::size_t g = 0; g < groups; ++g) {
         const VisibilityEvidence& own = inquiry.evidence()[c * groups + g];
-        const unsigned kept = is_cut[c] ? ~unsigned{uncertain.open[c * groups + g]} : ~0U;
+        const unsigned kept = is_cut[c] ? ~unsigned{uncertain.lights[c * groups + g]} : ~0U;
         VisibilityEvidence& there = around[*corner * groups + g];
         there.seen |= static_cast<std::uint16_t>(own.seen & kept);
         there.hidden |= static_cast<std::uint16_t>(own.hidden & kept);
@@ -87,7 +88,7 @@ std::vector<VisibilityEvidence> evidence_around(const std::vector<Facet>& facets
 }  // namespace
 
 VisibilityTable::VisibilityTable(const LightSet& lights)
-    : groups_(lights.groups()), surrounding_(lights), answers_(groups_) {
+    : groups_(lights.groups()), answers_(groups_) {
   for (std::size_t g = 0; g < groups_; ++g)
     answers_[g].known = static_cast<std::uint16_t>(~lights.used_lanes(g));
 }
@@ -96,6 +97,7 @@ VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, FacetCells fa
                                  const LightSet& lights, const PeriodicScene& scene, int most_rays)
     : VisibilityTable(lights) {
   cells_ = std::move(facet_cells);
+  surrounding_ = SurroundingLights(lights);
   const std::vector<Answer> nothing = std::exchange(answers_, {});
   std::vector<Answer> answers;
   std::vector<std::uint16_t> wanted;
@@ -119,20 +121,20 @@ VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, FacetCells fa
   if (!uncertain.cells.empty()) {
     std::vector<Cell> cut_cells;
     std::vector<Cell> fine;
-    std::vector<std::uint16_t> open;
+    std::vector<std::uint16_t> asked;
     for (const std::uint32_t c : uncertain.cells) {
       cut_cells.push_back(inquiry.cells()[c]);
       cut(cut_cells.back(), refinement, fine);
       const std::size_t at = c * groups_;
       for (std::size_t part = 0; part < parts; ++part) {
-        open.insert(open.end(), &uncertain.open[at], &uncertain.open[at] + groups_);
+        asked.insert(asked.end(), &uncertain.lights[at], &uncertain.lights[at] + groups_);
         fine_answers.insert(fine_answers.end(), &answers[at], &answers[at] + groups_);
       }
     }
     PlaceNumbers numbers;
     CellCorners fine_corners = cell_corners(facets, cut_cells, refinement, numbers);
     VisibilityInquiry fine_inquiry(
-        facets, lights, scene, std::move(fine), std::move(fine_corners), std::move(open),
+        facets, lights, scene, std::move(fine), std::move(fine_corners), std::move(asked),
         evidence_around(facets, inquiry, uncertain, refinement, numbers, groups_));
     ask(fine_inquiry, most_rays, uncertain.share, fine_answers);
   }

@@ -6,6 +6,9 @@
 // contradicts what was certain before. Cells that stay uncertain of some light, mostly where a
 // shadow ends, are cut finer and asked again. The few answers that are wrong still are made good by
 // `PathBlock`, which checks one in 256.
+//
+// It answers for rays between the lights, too: from where all lights around a direction are seen,
+// a ray that way most likely meets nothing. `PathBlock` checks one in four of these.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,8 @@
 // The fast estimator held against the plain one, texel by texel and pair by pair.
 #pragma once
 
+#include <cstdint>
+
 #include "acquisition/mesostructure.h"
 
 namespace weft::test {
@@ -10,6 +12,7 @@ struct Agreement {
   double outside = 0;        ///< share of |z| > 4: chance has 6e-5
   double difference = 0;     ///< of the means over all, relative
   double deviation = 0;      ///< standard error of that difference, relative
+  std::int64_t open_bounces = 0;
 };
 
 /// Three views and two lights, 16 x 16 texels, with a visibility table where there are triangles.

@@ -64,7 +64,8 @@ TEST_CASE("nothing surrounds a direction below the lowest lights, or where light
   }
   CHECK(around_ubo.around({0, 0, -1}).empty());
   CHECK(around_ubo.around({1, 0, 0}).empty());
-  for (const char* name : {"fibonacci:1", "fibonacci:2"}) {
+  for (const char* name :
+       {"fibonacci:1", "fibonacci:3", "fibonacci:7", "regular:2x3", "fibonacci:10"}) {
     const LightSet few(named_directions(name));
     const SurroundingLights around_few(few);
     for (int i = 0; i < 1000; ++i) CHECK(around_few.around(random_direction(i)).empty());

@@ -127,19 +127,26 @@ TEST_CASE("the tile's mean is reciprocal") {
 }
 
 TEST_CASE("the bytes do not depend on threads") {
-  const ViewTracer tracer(test::checker(64), named_directions("regular:3x8"),
-                          {.width = 20, .height = 12, .spp = 5, .max_bounces = 4, .seed = 5});
-  const Direction view = from_spherical(1.0, 0.5);
-  const auto with_threads = [&](std::size_t n) {
-    const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism,
-                                              n);
-    return tracer.trace(view, 3);
-  };
-  const TracedView one = with_threads(1);
-  const TracedView four = with_threads(4);
-  CHECK(one.values == four.values);
-  CHECK(one.standard_errors == four.standard_errors);
-  CHECK(one.statistics.rays() == four.statistics.rays());
+  // Without a table, and with one that answers for shadows and bounces.
+  for (const std::size_t views : {1, 100'000}) {
+    const auto with_threads = [&](std::size_t n) {
+      const oneapi::tbb::global_control control(
+          oneapi::tbb::global_control::max_allowed_parallelism, n);
+      const ViewTracer tracer(
+          test::checker(64), named_directions("ubo81"),
+          {.width = 20, .height = 12, .spp = 5, .max_bounces = 4, .views = views, .seed = 5});
+      TracedView traced = tracer.trace(from_spherical(1.0, 0.5), 3);
+      traced.statistics.table_rays = tracer.visibility().rays();
+      return traced;
+    };
+    const TracedView one = with_threads(1);
+    const TracedView four = with_threads(4);
+    CHECK(one.values == four.values);
+    CHECK(one.standard_errors == four.standard_errors);
+    CHECK(one.statistics.rays() == four.statistics.rays());
+    CHECK(one.statistics.open_checked == four.statistics.open_checked);
+    CHECK((one.statistics.open_checked > 0) == (views > 1));
+  }
 }
 
 TEST_CASE("a view is traced whole though another view's task fails meanwhile") {
@@ -200,6 +207,8 @@ TEST_CASE("what cannot be traced is refused") {
   };
   CHECK_THROWS_WITH(make({from_spherical(radians(89.95), 0)}, {}),
                     Catch::Contains("light 0") && Catch::Contains("89.9"));
+  CHECK_THROWS_WITH(make({}, {}), Catch::Contains("lights"));
+  CHECK_THROWS_WITH(make({}, {.views = 1'000'000}), Catch::Contains("lights"));
   CHECK_THROWS_WITH(make({{0, 0, 1}}, {.spp = 0}), Catch::Contains("--spp"));
   CHECK_THROWS_WITH(make({{0, 0, 1}}, {.width = 0}), Catch::Contains("--texels"));
   CHECK_THROWS_AS(make({{0, 0, 1}}, {.max_bounces = -1}), Error);

@@ -71,16 +71,18 @@ Mesostructure wires() {
   return test::structure(mesh, {Bsdf::lambert(Rgb(0.5F))}, 0.4F);
 }
 
-// A white square of 0.2 tiles, 0.15 above a white plane.
-Mesostructure roof() {
+// Four white squares of 0.1 tiles, 0.3 above a white plane.
+Mesostructure roofs() {
   TriangleMesh mesh = test::flat(Rgb(1)).mesh;
-  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  for (const auto& [x, y] : {std::pair{0.4F, 0.4F}, {0.6F, 0.4F}, {0.6F, 0.6F}, {0.4F, 0.6F}})
-    mesh.positions.emplace_back(x, y, 0.15F);
-  mesh.triangles.push_back({first, first + 1, first + 2});
-  mesh.triangles.push_back({first, first + 2, first + 3});
-  mesh.materials.insert(mesh.materials.end(), {0, 0});
-  return test::structure(mesh, {Bsdf::lambert(Rgb(1))}, 0.15F);
+  for (const auto& [x, y] : {std::pair{0.2F, 0.2F}, {0.7F, 0.2F}, {0.2F, 0.7F}, {0.7F, 0.7F}}) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const auto& [u, v] : {std::pair{0.0F, 0.0F}, {0.1F, 0.0F}, {0.1F, 0.1F}, {0.0F, 0.1F}})
+      mesh.positions.emplace_back(x + u, y + v, 0.3F);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+    mesh.materials.insert(mesh.materials.end(), {0, 0});
+  }
+  return test::structure(mesh, {Bsdf::lambert(Rgb(1))}, 0.3F);
 }
 
 /// @param views  of the dataset: the more, the more rays make its table.
@@ -137,6 +139,35 @@ TEST_CASE("cells where shadows end are cut finer, where that pays") {
   };
   check(TraceableStructure(test::checker(48)));
   check(TraceableStructure(test::rings(128, 16)));
+}
+
+TEST_CASE("of what is certain all around one in 32 is asked again, and stands for 32") {
+  const TraceableStructure flat(test::flat(Rgb(1)));
+  const LightSet lights(named_directions("ubo81"));
+  const std::vector<Cell> cells = FacetCells(flat.facets).all();
+  PlaceNumbers numbers;
+  CellCorners corners = cell_corners(flat.facets, cells, 1, numbers);
+  std::vector<std::uint16_t> wanted;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (std::size_t g = 0; g < lights.groups(); ++g) wanted.push_back(lights.used_lanes(g));
+  }
+  VisibilityInquiry inquiry(flat.facets, lights, flat.scene, cells, std::move(corners), wanted);
+  std::vector<VisibilityAnswer> answers(wanted.size());
+  const auto pairs = static_cast<double>(cells.size() * lights.size());
+  CHECK(static_cast<double>(inquiry.ask(0, answers).rays) == pairs);
+  inquiry.agree(answers);
+  double rays = 0;
+  double certain = 0;
+  constexpr int rounds =
+      64;  // with 18,432 cells 1,152 packets, each asked twice: 3 % standard error
+  for (int round = 1; round <= rounds; ++round) {
+    const VisibilityInquiry::Round asked = inquiry.ask(round, answers);
+    rays += static_cast<double>(asked.rays) / rounds;
+    certain += static_cast<double>(asked.certain) / rounds;
+    CHECK(asked.contradicted == 0);
+  }
+  CHECK(rays == Approx(pairs / 32).epsilon(0.12));
+  CHECK(certain == Approx(pairs).epsilon(0.12));
 }
 
 TEST_CASE("what is certain all around is hardly asked again") {
@@ -314,24 +345,24 @@ TEST_CASE("where the table is often wrong, the mean is right all the same", "[sl
   CHECK(statistics::t_test(result.differences, 0) > 1e-3);
 }
 
-TEST_CASE("where rays to the open meet a roof between all lights, the mean is right all the same") {
-  // Eight lights all around at 60 degrees are seen from all of the ground, and a small roof from
-  // beneath hides what is between them.
+TEST_CASE("where rays to the open meet roofs between all lights, the mean is right all the same") {
+  // Sixteen lights all around at 30 degrees are seen from all of the ground, and from beneath small
+  // roofs hide what is between them.
   std::vector<Direction> lights;
-  for (int i = 0; i < 8; ++i) lights.push_back(from_spherical(radians(60.0), radians(45.0 * i)));
+  for (int i = 0; i < 16; ++i) lights.push_back(from_spherical(radians(30.0), radians(22.5 * i)));
   const TraceSettings settings{
       .width = 16, .height = 16, .spp = 1024, .max_bounces = 3, .views = 1000, .seed = 5};
-  const Mean result = compare_means(roof(), lights, settings, from_spherical(0.9, 0.3));
+  const Mean result = compare_means(roofs(), lights, settings, from_spherical(0.9, 0.3));
   const auto open = static_cast<double>(result.statistics.open_bounces);
   const double share = open / static_cast<double>(result.statistics.paths);
   const double wrong = static_cast<double>(result.statistics.open_wrong) /
                        static_cast<double>(result.statistics.open_checked);
   INFO(share << " a path are open, " << wrong << " of them wrong; the mean is off by "
              << result.mean << " +- " << result.standard_error);
-  CHECK(wrong > 0.03);
-  CHECK(share > 0.3);
-  // Uncorrected, the mean would be off by 1.4 %.
-  CHECK(result.standard_error < 5e-4);
+  CHECK(wrong > 5e-3);
+  CHECK(share > 0.08);
+  // Uncorrected, the mean would be off by 0.16 %.
+  CHECK(result.standard_error < 3e-4);
   CHECK(statistics::t_test(result.differences, 0) > 1e-3);
 }
 
@@ -345,8 +376,8 @@ TEST_CASE("rays that the table takes to be open hardly ever meet anything") {
     INFO(s.open_bounces << " of " << asked << " open, " << s.open_checked << " traced, "
                         << s.open_wrong << " of them met something");
     CHECK(static_cast<double>(s.open_bounces) > 0.25 * asked);
-    CHECK(static_cast<double>(s.open_checked) > 0.8 / 32 * static_cast<double>(s.open_bounces));
-    CHECK(static_cast<double>(s.open_checked) < 1.2 / 32 * static_cast<double>(s.open_bounces));
+    CHECK(static_cast<double>(s.open_checked) > 0.9 / 4 * static_cast<double>(s.open_bounces));
+    CHECK(static_cast<double>(s.open_checked) < 1.1 / 4 * static_cast<double>(s.open_bounces));
     CHECK(static_cast<double>(s.open_wrong) < 5e-3 * static_cast<double>(s.open_checked));
   };
   rate_of(test::checker(64));
