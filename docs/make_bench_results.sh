@@ -6,6 +6,7 @@ set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bench=${1:?the JSON file of a bench}
 processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+processor+=", $(awk -F': *' '/^cpu family/ {f = $2} /^model\t/ {print "family " f " model " $2; exit}' /proc/cpuinfo)"
 
 jq -r --arg processor "$processor" --arg threads "$(nproc)" '
   def round(n): . * pow(10; n) | floor / pow(10; n);
