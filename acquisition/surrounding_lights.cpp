@@ -12,7 +12,7 @@ namespace weft {
 
 namespace {
 
-// Eight are those right around the direction and some of the next, so that whatever stands up
+// So many are those right around the direction and some of the next, so that whatever stands up
 // between two of them would most likely hide a third.
 constexpr std::size_t count = 8;
 constexpr float farthest = radians(40.0F);
@@ -78,14 +78,13 @@ SurroundingLights::SurroundingLights(const LightSet& lights) : first_{0} {
           direction_at(edge(row + 1), edge(column)), direction_at(edge(row + 1), edge(column + 1))};
       const bool on_all_sides = std::ranges::all_of(
           corners, [&](const Direction& corner) { return surround(lights, chosen, corner); });
-      if (on_all_sides && (lights[chosen.back()] ^ centre) > std::cos(farthest)) add(chosen);
+      if (on_all_sides && (lights[chosen.back()] ^ centre) > std::cos(farthest)) add_bin(chosen);
       first_.push_back(static_cast<std::uint32_t>(parts_.size()));
     }
   }
 }
 
-// As the parts of another bin.
-void SurroundingLights::add(std::span<const std::uint32_t> lights) {
+void SurroundingLights::add_bin(std::span<const std::uint32_t> lights) {
   std::vector<std::uint32_t> sorted(lights.begin(), lights.end());
   std::ranges::sort(sorted);
   for (const std::uint32_t l : sorted) {

@@ -33,7 +33,8 @@ class SurroundingLights {
  private:
   static constexpr int side = 64;  // bins a side of the hemisphere's octahedral map
   static std::size_t bin_of(const Direction& direction);
-  void add(std::span<const std::uint32_t> lights);
+  // The next bin, which these lights surround.
+  void add_bin(std::span<const std::uint32_t> lights);
 
   std::vector<Part> parts_;
   std::vector<std::uint32_t> first_;  // part of each bin, and the end

@@ -11,8 +11,8 @@ namespace {
 
 // Rays are enough once fewer than this share of all queries would contradict what was certain.
 constexpr double rare = 2e-6;
-constexpr std::size_t most_refined_bytes =
-    128'000'000;  // of answers; asking takes three times as much
+// Of answers; asking takes three times as much.
+constexpr std::size_t most_refined_bytes = 128'000'000;
 
 // Lights that face the cell, and of which it is not certain.
 std::uint16_t uncertain_lights(const VisibilityEvidence& evidence, const VisibilityAnswer& answer) {

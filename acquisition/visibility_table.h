@@ -26,7 +26,8 @@ class VisibilityTable {
 
   /// Knows nothing: every query is traced.
   explicit VisibilityTable(const LightSet& lights);
-  static constexpr int least_rays = 2;  ///< of each cell towards each light
+  /// Of each cell towards each light; with fewer a table is worth nothing.
+  static constexpr int least_rays = 2;
   /// From so many rays a cell and light on, uncertain cells are cut into 16 and asked again.
   static constexpr int rays_to_refine = 32;
   /// @param cells      of the facets.
