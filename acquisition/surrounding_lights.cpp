@@ -31,14 +31,12 @@ bool surround(const LightSet& lights, std::span<const std::uint32_t> chosen,
               const Direction& direction) {
   constexpr float right_there = 1e-4F;
   const Frame frame = frame_around(direction);
-  std::array<double, count> found{};
-  std::size_t n = 0;
+  std::vector<double> angles;
   for (const std::uint32_t l : chosen) {
     const Vec3 local = frame.to_local(lights[l]);
-    if (std::hypot(local.x, local.y) > right_there) found[n++] = std::atan2(local.y, local.x);
+    if (std::hypot(local.x, local.y) > right_there) angles.push_back(std::atan2(local.y, local.x));
   }
-  if (n == 0) return false;
-  const std::span<double> angles(found.data(), n);
+  if (angles.empty()) return false;
   std::ranges::sort(angles);
   double gap = angles.front() + 2 * std::numbers::pi - angles.back();
   for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
