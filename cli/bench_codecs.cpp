@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <iterator>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,7 +38,12 @@ struct Options {
   bool variants = true;
   std::string variant_data;
   std::string variant_directions = "regular:16x8";
+  bool comparisons = true;
+  int comparison_texels = 16;
 };
+
+/// What lobes and SRBF are compared with others on.
+constexpr std::array<const char*, 3> compared_structures{"checker", "rings", "tissue"};
 
 /// The registry's rows that were chosen, in its order; all where none was.
 std::vector<Codec> chosen_codecs(const Options& options) {
@@ -52,37 +60,44 @@ std::vector<Codec> chosen_codecs(const Options& options) {
   return chosen;
 }
 
-std::vector<CodecVariant> chosen_variants(const Options& options,
-                                          const std::vector<Codec>& chosen) {
+std::vector<CodecVariant> of_chosen(std::span<const CodecVariant> all,
+                                    const std::vector<Codec>& chosen) {
   std::vector<CodecVariant> variants;
-  for (const CodecVariant& variant : factor_variants()) {
-    if (options.variants && std::ranges::count(chosen, variant.codec, &Codec::name) > 0)
-      variants.push_back(variant);
+  for (const CodecVariant& variant : all) {
+    if (std::ranges::count(chosen, variant.codec, &Codec::name) > 0) variants.push_back(variant);
   }
   return variants;
 }
 
-fs::path traced(const Options& options, const std::string& directions, const Session& session) {
-  const fs::path file = options.mesostructure.empty()
-                            ? scene_folder(options.scenes) / "mesostructures" / "tissue.toml"
-                            : fs::path(options.mesostructure);
+fs::path structure_file(const std::string& name, const Options& options) {
+  return scene_folder(options.scenes) / "mesostructures" / (name + ".toml");
+}
+
+fs::path tissue_or_named(const Options& options) {
+  return options.mesostructure.empty() ? structure_file("tissue", options)
+                                       : fs::path(options.mesostructure);
+}
+
+fs::path traced(const fs::path& file, int texels, const std::string& directions,
+                const Options& options, const Session& session) {
   AcquisitionSettings settings;
-  settings.trace.width = settings.trace.height = options.texels;
+  settings.trace.width = settings.trace.height = texels;
   settings.trace.spp = options.spp;
   settings.trace.seed = session.seed;
   settings.views = settings.lights = directions;
-  Progress progress("acquire " + directions, session.quiet || session.json);
+  Progress progress(fmt::format("acquire {} {}", file.stem().string(), directions),
+                    session.quiet || session.json);
   return cached_dataset(cache_folder(), read_mesostructure(file), settings, progress);
 }
 
-std::shared_ptr<const Btf> read_data(const fs::path& folder, const std::string& key,
-                                     Session& session) {
+/// @param described  gets what the data are.
+std::shared_ptr<const Btf> read_data(const fs::path& folder, Json& described) {
   const auto btf = std::make_shared<const Btf>(read_btf(folder));
-  session.measured[key] = {{"folder", folder.string()},
-                           {"texels", {btf->width(), btf->height()}},
-                           {"views", btf->views().size()},
-                           {"lights", btf->lights().size()},
-                           {"bytes", btf->bytes()}};
+  described = {{"folder", folder.string()},
+               {"texels", {btf->width(), btf->height()}},
+               {"views", btf->views().size()},
+               {"lights", btf->lights().size()},
+               {"bytes", btf->bytes()}};
   return btf;
 }
 
@@ -92,6 +107,7 @@ Json json_of(const CodecBench& b) {
                {"decode_batched_ns", b.decode.batched},
                {"rmse", b.rmse},
                {"relative_rmse", b.relative_rmse},
+               {"luminance_difference", b.luminance_difference},
                {"bytes", b.bytes},
                {"constant_bytes", b.constant_bytes},
                {"ratio", b.ratio},
@@ -130,7 +146,7 @@ CodecBench bench_one(const std::string& name, const Codec& codec,
 
 CodecBenches bench_registry(const std::vector<Codec>& chosen, const fs::path& data,
                             Session& session) {
-  const auto btf = read_data(data, "dataset", session);
+  const auto btf = read_data(data, session.measured["dataset"]);
   say_head("codec", session);
   CodecBenches benches;
   for (const Codec& codec : chosen) {
@@ -140,19 +156,47 @@ CodecBenches bench_registry(const std::vector<Codec>& chosen, const fs::path& da
   return benches;
 }
 
-CodecBenches bench_variants(const std::vector<CodecVariant>& variants, const fs::path& data,
-                            Session& session) {
-  const auto btf = read_data(data, "variant_dataset", session);
-  say_head(fmt::format("\n{} x {} directions", btf->views().size(), btf->lights().size()), session);
+/// @param measured  gets an entry a variant.
+CodecBenches bench_variants(const std::vector<CodecVariant>& variants,
+                            const std::shared_ptr<const Btf>& btf, Json& measured,
+                            const Session& session) {
   CodecBenches benches;
   for (const CodecVariant& variant : variants) {
     benches[variant.name] =
         bench_one(variant.name, codec_named(variant.codec), variant.parameters, btf, session);
-    Json& json = session.measured["variants"][variant.name];
+    Json& json = measured[variant.name];
     json = {{"codec", variant.codec}, {"parameters", variant.parameters}};
     json.update(json_of(benches[variant.name]));
   }
   return benches;
+}
+
+CodecBenches bench_factors(const std::vector<CodecVariant>& variants, const Options& options,
+                           Session& session) {
+  const fs::path file = tissue_or_named(options);
+  const fs::path data =
+      options.variant_data.empty()
+          ? traced(file, options.texels, options.variant_directions, options, session)
+          : fs::path(options.variant_data);
+  const auto btf = read_data(data, session.measured["variant_dataset"]);
+  say_head(fmt::format("\n{} x {} directions", btf->views().size(), btf->lights().size()), session);
+  return bench_variants(variants, btf, session.measured["variants"], session);
+}
+
+/// The bars of codecs against each other, on small tiles of several structures.
+std::vector<Bar> bench_comparisons(const std::vector<CodecVariant>& variants,
+                                   const Options& options, Session& session) {
+  std::vector<Bar> bars;
+  for (const std::string structure : compared_structures) {
+    Json& measured = session.measured["comparisons"][structure];
+    const auto btf = read_data(traced(structure_file(structure, options), options.comparison_texels,
+                                      options.directions, options, session),
+                               measured["dataset"]);
+    say_head(fmt::format("\n{}, {} x {} texels", structure, btf->width(), btf->height()), session);
+    const CodecBenches fits = bench_variants(variants, btf, measured["codecs"], session);
+    std::ranges::move(comparison_bars(structure, fits), std::back_inserter(bars));
+  }
+  return bars;
 }
 
 void report_bars(const std::vector<Bar>& bars, Session& session) {
@@ -172,26 +216,31 @@ void report_bars(const std::vector<Bar>& bars, Session& session) {
 
 void bench_codecs(const Options& options, Session& session) {
   const std::vector<Codec> chosen = chosen_codecs(options);
-  const std::vector<CodecVariant> variants = chosen_variants(options, chosen);
   // All that is named is looked at before any is measured.
   for (const std::string& data : {options.data, options.variant_data}) {
     if (!data.empty()) read_btf_header(data);
   }
   check_elevations(named_directions(options.directions), "direction");
   check_elevations(named_directions(options.variant_directions), "direction");
+  const std::vector<CodecVariant> compared =
+      options.comparisons ? of_chosen(compared_variants(), chosen) : std::vector<CodecVariant>();
+  for (const std::string structure : compared_structures) {
+    if (!compared.empty()) read_mesostructure(structure_file(structure, options));
+  }
 
   session.measured["codecs"] = Json::object();  // first in what is printed
-  const fs::path data =
-      options.data.empty() ? traced(options, options.directions, session) : fs::path(options.data);
+  const fs::path data = options.data.empty() ? traced(tissue_or_named(options), options.texels,
+                                                      options.directions, options, session)
+                                             : fs::path(options.data);
   const CodecBenches codec_benches = bench_registry(chosen, data, session);
-  CodecBenches variant_benches;
-  if (!variants.empty()) {
-    const fs::path folder = options.variant_data.empty()
-                                ? traced(options, options.variant_directions, session)
-                                : fs::path(options.variant_data);
-    variant_benches = bench_variants(variants, folder, session);
-  }
-  report_bars(codec_bars(codec_benches, variant_benches), session);
+  CodecBenches factor_benches;
+  const std::vector<CodecVariant> factors = of_chosen(factor_variants(), chosen);
+  if (options.variants && !factors.empty())
+    factor_benches = bench_factors(factors, options, session);
+  std::vector<Bar> bars = codec_bars(codec_benches, factor_benches);
+  if (!compared.empty())
+    std::ranges::move(bench_comparisons(compared, options, session), std::back_inserter(bars));
+  report_bars(bars, session);
 }
 
 }  // namespace
@@ -204,8 +253,9 @@ void add_bench_codecs(CLI::App& bench, Session& session) {
       "that of the raw data), decoding on one thread (ns a query, one by one and batched: median "
       "of 301 passes over 1,024 fixed queries), error at the samples and bytes, and with --json "
       "each level of detail's times and error between the samples; then CMF, HF and laplacian by "
-      "their parameters, on directions as dense as their paper's. Datasets are traced once and "
-      "kept in $XDG_CACHE_HOME/weft or ~/.cache/weft");
+      "their parameters, on directions as dense as their paper's, and lobes, PTM, Lafortune models "
+      "and SRBF against each other, on small tiles of checker, rings and tissue. Datasets are "
+      "traced once and kept in $XDG_CACHE_HOME/weft or ~/.cache/weft");
   codecs
       ->add_option("--codec", options->codecs,
                    "Only this one, and its variants; may be repeated. Default: all")
@@ -230,6 +280,14 @@ void add_bench_codecs(CLI::App& bench, Session& session) {
       ->add_option("--variant-directions", options->variant_directions,
                    "Views and lights of the variants' dataset")
       ->capture_default_str();
+  codecs->add_flag("--comparisons,!--no-comparisons", options->comparisons,
+                   "Whether to compare lobes, PTM, Lafortune models and SRBF by its variables (for "
+                   "SRBF that takes minutes); on unless --no-comparisons");
+  codecs
+      ->add_option("--comparison-texels", options->comparison_texels,
+                   "Texels a side of the tiles that they are compared on")
+      ->capture_default_str()
+      ->check(whole_number(16384, 1));
   codecs->add_option(
       "--scenes", options->scenes,
       "Folder of scenes; default: $WEFT_SCENES, the installed share/weft/scenes, ./scenes");

@@ -26,6 +26,23 @@ std::span<const CodecVariant> factor_variants() {
   return variants;
 }
 
+std::span<const CodecVariant> compared_variants() {
+  // SRBF's optimal angles fit every level with fixed ones first, so that the others get more
+  // sweeps.
+  static const std::array<CodecVariant, 9> variants{{
+      {"lobes", "lobes", {}},
+      {"ptm", "ptm", {}},
+      {"lafortune", "lafortune", {}},
+      {"srbf optimal", "srbf", {"iterations=300"}},
+      {"srbf optimal float", "srbf", {"iterations=300", "bits=float"}},
+      {"srbf half-light-view", "srbf", {"modes=half-light-view", "iterations=300", "sweeps=4"}},
+      {"srbf half-half-half", "srbf", {"modes=half-half-half", "iterations=300", "sweeps=4"}},
+      {"srbf half-difference", "srbf", {"modes=half-difference", "iterations=300", "sweeps=4"}},
+      {"srbf univariate", "srbf", {"multivariate=false", "iterations=300", "sweeps=4"}},
+  }};
+  return variants;
+}
+
 namespace {
 
 /// A number of one bench against a limit.
@@ -46,6 +63,44 @@ struct Growth {
   double limit;
 };
 
+/// How far the error of one fit is below, or its ratio to, that of another on the same data.
+struct Comparison {
+  const char* name;
+  const char* other;
+  const char* what;
+  const char* unit;
+  double (*value)(const CodecBench& fit, const CodecBench& other);
+  double limit;
+  bool at_least = false;
+};
+
+double percent_below(const CodecBench& fit, const CodecBench& other) {
+  return 100 * (1 - fit.rmse / other.rmse);
+}
+double percent_above(const CodecBench& fit, const CodecBench& other) {
+  return -percent_below(fit, other);
+}
+double of_difference(const CodecBench& fit, const CodecBench& other) {
+  return fit.luminance_difference / other.luminance_difference;
+}
+
+constexpr std::array<Comparison, 7> comparisons{{
+    {"lobes", "ptm", "lobes' luminance difference over PTM's", "times", of_difference, 1},
+    {"ptm", "lafortune", "PTM's luminance difference over Lafortune's", "times", of_difference, 1},
+    {"srbf optimal", "srbf half-half-half", "srbf: RMSE below (half, half, half)'s", "%",
+     percent_below, 30, true},
+    {"srbf optimal", "srbf half-difference", "srbf: RMSE below (half, difference)'s", "%",
+     percent_below, 30, true},
+    {"srbf optimal", "srbf half-light-view", "srbf: RMSE below (half, light, view)'s", "%",
+     percent_below, 5, true},
+    {"srbf optimal", "srbf univariate", "srbf: RMSE below the univariate form's", "%",
+     percent_below, 50, true},
+    {"srbf optimal", "srbf optimal float", "srbf: RMSE of halfs above floats", "%", percent_above,
+     2},
+}};
+/// Of PTM's difference, where data are as glossy as these.
+constexpr double most_of_ptm = 0.5;
+
 double fit_seconds(const CodecBench& bench) {
   return bench.fit_seconds;
 }
@@ -59,14 +114,13 @@ double ratio(const CodecBench& bench) {
   return bench.ratio;
 }
 
-constexpr std::array<Limit, 9> codec_limits{{
+constexpr std::array<Limit, 8> codec_limits{{
     {"laplacian", "laplacian: fit", "s", fit_seconds, 30},
     {"raw", "raw: decode", "ns", decode_ns, 150},
     {"cmf", "cmf: decode", "ns", decode_ns, 60},
     {"laplacian", "laplacian: decode", "ns", decode_ns, 150},
     {"lobes", "lobes: fit", "s", fit_seconds, 180},
     {"lobes", "lobes: decode", "ns", decode_ns, 80},
-    {"srbf", "srbf: fit", "s", fit_seconds, 900},
     {"srbf", "srbf: decode, batched", "ns", batched_ns, 120},
     {"srbf", "srbf: 24-bit input over texture bytes", "times", ratio, 30, true},
 }};
@@ -81,6 +135,10 @@ constexpr std::array<Growth, 4> growths{{
     {"cmf", "cmf unclustered", "cmf: RMSE of 256 clusters a factor above none", 12},
     {"hf", "hf unclustered", "hf: RMSE of 256 clusters a factor above none", 12},
 }};
+/// Of a fit by SRBF of up to 64 x 64 texels, and of larger ones.
+constexpr std::size_t small_tile = std::size_t{64} * 64;
+constexpr double srbf_seconds = 15 * 60;
+constexpr double srbf_seconds_of_large_tiles = 60 * 60;
 constexpr double least_gain_of_batches = 2;
 constexpr double most_memory = 3;
 
@@ -107,6 +165,11 @@ void add_memory(const CodecBenches& benches, const std::string& dataset, std::ve
 std::vector<Bar> codec_bars(const CodecBenches& codecs, const CodecBenches& variants) {
   std::vector<Bar> bars;
   add_limits(codec_limits, codecs, bars);
+  if (const auto srbf = codecs.find("srbf"); srbf != codecs.end()) {
+    const bool is_small = srbf->second.texels <= small_tile;
+    bars.push_back({"srbf: fit", "s", srbf->second.fit_seconds,
+                    is_small ? srbf_seconds : srbf_seconds_of_large_tiles});
+  }
   for (const auto& [name, bench] : codecs) {
     bars.push_back({name + ": decode one by one over batched", "times",
                     bench.decode.single / bench.decode.batched, least_gain_of_batches, true});
@@ -121,6 +184,23 @@ std::vector<Bar> codec_bars(const CodecBenches& codecs, const CodecBenches& vari
   }
   add_memory(codecs, "", bars);
   add_memory(variants, ", dense directions", bars);
+  return bars;
+}
+
+std::vector<Bar> comparison_bars(const std::string& structure, const CodecBenches& fits) {
+  std::vector<Bar> bars;
+  for (const Comparison& comparison : comparisons) {
+    const auto fit = fits.find(comparison.name);
+    const auto other = fits.find(comparison.other);
+    if (fit == fits.end() || other == fits.end()) continue;
+    if (!(other->second.rmse > 0 && other->second.luminance_difference > 0)) continue;
+    const bool is_of_lobes = fit->first == "lobes";
+    const double limit = is_of_lobes && (structure == "checker" || structure == "rings")
+                             ? most_of_ptm
+                             : comparison.limit;
+    bars.push_back({structure + ", " + comparison.what, comparison.unit,
+                    comparison.value(fit->second, other->second), limit, comparison.at_least});
+  }
   return bars;
 }
 

@@ -1,5 +1,7 @@
 // What codecs are held to, and the fits that it takes to tell: CMF and HF against their paper
-// (Suykens et al. 2003, section 4.4, table 2 and figure 3), the rest against limits of our own.
+// (Suykens et al. 2003, section 4.4, table 2 and figure 3), lobes against the models that theirs
+// compares them with (Filip and Haindl 2004, table 1), SRBF against other variables of its kernels
+// (Tsai et al. 2011, figures 4.1 and 4.3), the rest against limits of our own.
 #pragma once
 
 #include <map>
@@ -22,6 +24,10 @@ struct CodecVariant {
 /// floats, with and without codebooks, and HF by its smoothing.
 std::span<const CodecVariant> factor_variants();
 
+/// The fits that are held against each other on one structure: lobes, PTM and Lafortune models, and
+/// SRBF by its variables, with iterations until little changes.
+std::span<const CodecVariant> compared_variants();
+
 /// One number and what it is held to.
 struct Bar {
   std::string what;
@@ -38,5 +44,10 @@ using CodecBenches = std::map<std::string, CodecBench>;
 /// @param codecs    defaults, by the codec's name.
 /// @param variants  of `factor_variants`, by their names.
 std::vector<Bar> codec_bars(const CodecBenches& codecs, const CodecBenches& variants);
+
+/// @param structure  what the bars begin with; lobes are held to half of PTM's difference on
+///                   "checker" and "rings", to less than it on others.
+/// @param fits       of `compared_variants` on that structure, by their names; some may be missing.
+std::vector<Bar> comparison_bars(const std::string& structure, const CodecBenches& fits);
 
 }  // namespace weft

@@ -127,6 +127,8 @@ CodecBench bench_codec(const Codec& codec, const std::vector<std::string>& param
   const SampleError error = sample_error(*btf, *fitted);
   bench.rmse = error.rmse;
   bench.relative_rmse = error.relative_rmse;
+  bench.luminance_difference = error.luminance_difference;
+  bench.texels = static_cast<std::size_t>(btf->width()) * static_cast<std::size_t>(btf->height());
   bench.bytes = fitted->bytes();
   bench.constant_bytes = fitted->constant_bytes();
   bench.ratio = compression_ratio(*fitted);

@@ -40,9 +40,11 @@ struct LevelBench {
 struct CodecBench {
   double fit_seconds = 0;  ///< of the wall, all threads
   DecodeTimes decode;
-  double rmse = 0;           ///< as `sample_error`, 1/sr
-  double relative_rmse = 0;  ///< of the data's root mean square
-  std::size_t bytes = 0;     ///< of textures
+  double rmse = 0;                  ///< as `sample_error`, 1/sr
+  double relative_rmse = 0;         ///< of the data's root mean square
+  double luminance_difference = 0;  ///< as `sample_error`
+  std::size_t texels = 0;           ///< of the tile
+  std::size_t bytes = 0;            ///< of textures
   std::size_t constant_bytes = 0;
   double ratio = 0;  ///< `compression_ratio`
   /// The largest resident set during the fit, what the process held before left out and the raw

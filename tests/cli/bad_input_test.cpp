@@ -271,4 +271,6 @@ TEST_CASE("bench codecs refuses what it cannot measure, before it measures anyth
   refused({"--data", "small.btf", "--variant-directions", "regular:0x8"}, {"regular:0x8"});
   refused({"--mesostructure", "unknown.toml"}, {"unknown.toml:2", "hight"});
   refused({"--scenes", "nothing"}, {"nothing", "folder"});
+  refused({"--data", "small.btf", "--codec", "ptm", "--scenes", "nothing"}, {"nothing", "folder"});
+  refused({"--comparison-texels", "0"}, {"--comparison-texels", "'0'", "from 1 to"});
 }

@@ -38,7 +38,8 @@ TEST_CASE("bench codecs prints an entry for each registered codec") {
   const TemporaryFolder temporary;
   write_small_dataset(temporary.path / "small.btf");
   const Outcome outcome = run_weft(
-      {"bench", "codecs", "--data", "small.btf", "--no-variants", "--json"}, temporary.path);
+      {"bench", "codecs", "--data", "small.btf", "--no-variants", "--no-comparisons", "--json"},
+      temporary.path);
   REQUIRE(outcome.exit_code == 0);
   CHECK(outcome.err.empty());
   const Json json = Json::parse(outcome.out);
@@ -77,6 +78,35 @@ TEST_CASE("bench codecs measures one codec and its variants alone") {
     growth = growth || bar["what"].get<std::string>().find("256 clusters") != std::string::npos;
   }
   CHECK(growth);
+}
+
+TEST_CASE("bench codecs compares fitted codecs on several structures") {
+  const TemporaryFolder temporary;
+  write_small_dataset(temporary.path / "small.btf");
+  const std::string cache = "XDG_CACHE_HOME=" + (temporary.path / "cache").string();
+  const std::string scenes = std::string(WEFT_SOURCE_DIR) + "/scenes";
+  const Outcome outcome = run_program(
+      {"env",   cache,     WEFT_BINARY, "bench",        "codecs",      "--codec",
+       "lobes", "--codec", "ptm",       "--data",       "small.btf",   "--comparison-texels",
+       "2",     "--spp",   "2",         "--directions", "regular:2x4", "--scenes",
+       scenes,  "--json"},
+      temporary.path);
+  REQUIRE(outcome.exit_code == 0);
+  const Json json = Json::parse(outcome.out);
+  const std::vector<std::string> structures{"checker", "rings", "tissue"};
+  CHECK(names_in(json["comparisons"]) == structures);
+  for (const std::string& structure : structures) {
+    const Json& compared = json["comparisons"][structure];
+    CHECK(compared["dataset"]["texels"] == Json({2, 2}));
+    CHECK(names_in(compared["codecs"]) == std::vector<std::string>{"lobes", "ptm"});
+    const double lobes = compared["codecs"]["lobes"]["luminance_difference"];
+    const double ptm = compared["codecs"]["ptm"]["luminance_difference"];
+    const auto told = std::ranges::count_if(json["bars"], [&](const Json& bar) {
+      return bar["what"] == structure + ", lobes' luminance difference over PTM's" &&
+             bar["value"] == lobes / ptm && bar["below"] == (structure == "tissue" ? 1.0 : 0.5);
+    });
+    CHECK(told == 1);
+  }
 }
 
 TEST_CASE("bench codecs traces its dataset once, and keeps it in the cache") {

@@ -1,11 +1,13 @@
 // What the bench of codecs tells, on data whose numbers are known.
 #include "study/codec_bench.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <memory>
 #include <thread>
 
 #include "btf/direction.h"
+#include "codecs/sample_error.h"
 #include "study/codec_bars.h"
 
 namespace {
@@ -44,6 +46,12 @@ std::shared_ptr<const weft::Btf> grey_btf() {
 CodecBench with_rmse(double rmse) {
   CodecBench bench;
   bench.rmse = rmse;
+  return bench;
+}
+
+CodecBench with_difference(double difference) {
+  CodecBench bench = with_rmse(1);
+  bench.luminance_difference = difference;
   return bench;
 }
 
@@ -95,6 +103,8 @@ TEST_CASE("The bench tells of every codec what its representation tells") {
     CHECK(bench.bytes == fitted->bytes());
     CHECK(bench.constant_bytes == fitted->constant_bytes());
     CHECK(bench.ratio == Approx(3.0 * 32 * 9 / static_cast<double>(fitted->bytes())));
+    CHECK(bench.texels == 32);
+    CHECK(bench.luminance_difference == weft::sample_error(*btf, *fitted).luminance_difference);
     CHECK(bench.fit_seconds > 0);
     CHECK(bench.decode.single > 0);
     CHECK(bench.decode.batched > 0);
@@ -161,11 +171,55 @@ TEST_CASE("Bars are told of what was measured, and met below or from their limit
   CHECK(bar_named(growths, "floats, clustered") == nullptr);  // nothing to divide by
 }
 
+TEST_CASE("SRBF's fit may take an hour where the tile is larger than 64 x 64 texels") {
+  CodecBench slow;
+  slow.fit_seconds = 1000;
+  slow.texels = 64 * 64;
+  CHECK_FALSE(bar_named(weft::codec_bars({{"srbf", slow}}, {}), "srbf: fit")->met());
+  slow.texels = 128 * 128;
+  CHECK(bar_named(weft::codec_bars({{"srbf", slow}}, {}), "srbf: fit")->met());
+}
+
+TEST_CASE("Codecs are held against each other where both were fitted to the structure") {
+  CHECK(weft::comparison_bars("checker", {}).empty());
+  const weft::CodecBenches fields{{"lobes", with_difference(0.6)},
+                                  {"ptm", with_difference(1)},
+                                  {"lafortune", with_difference(0.8)}};
+  for (const std::string structure : {"checker", "rings", "tissue"}) {
+    const auto bars = weft::comparison_bars(structure, fields);
+    REQUIRE(bars.size() == 2);
+    const weft::Bar& lobes = *bar_named(bars, structure + ", lobes");
+    CHECK(lobes.value == Approx(0.6));
+    CHECK(lobes.met() == (structure == "tissue"));  // the others are held to half
+    CHECK(bar_named(bars, "Lafortune")->value == Approx(1.25));
+    CHECK_FALSE(bar_named(bars, "Lafortune")->met());
+  }
+  const auto with = [](double rmse) {
+    CodecBench bench = with_difference(1);
+    bench.rmse = rmse;
+    return bench;
+  };
+  const auto bars = weft::comparison_bars("rings", {{"srbf optimal", with(0.9)},
+                                                    {"srbf optimal float", with(0.89)},
+                                                    {"srbf half-light-view", with(1)},
+                                                    {"srbf half-half-half", with(1.2)},
+                                                    {"srbf half-difference", with(0)},
+                                                    {"srbf univariate", with(1.8)}});
+  REQUIRE(bars.size() == 4);  // nothing is told of a fit without error
+  CHECK(bar_named(bars, "(half, light, view)")->value == Approx(10));
+  CHECK(bar_named(bars, "(half, light, view)")->met());
+  CHECK(bar_named(bars, "(half, half, half)")->value == Approx(25));
+  CHECK_FALSE(bar_named(bars, "(half, half, half)")->met());
+  CHECK(bar_named(bars, "univariate")->met());
+  CHECK(bar_named(bars, "floats")->value == Approx(100 * (0.9 / 0.89 - 1)));
+  CHECK(bar_named(bars, "floats")->met());
+}
+
 TEST_CASE("Every variant is of a codec that there is, and has its own name") {
-  for (const weft::CodecVariant& variant : weft::factor_variants()) {
-    CHECK_NOTHROW(weft::codec_named(variant.codec));
-    int namesakes = 0;
-    for (const auto& other : weft::factor_variants()) namesakes += other.name == variant.name;
-    CHECK(namesakes == 1);
+  for (const auto& variants : {weft::factor_variants(), weft::compared_variants()}) {
+    for (const weft::CodecVariant& variant : variants) {
+      CHECK_NOTHROW(weft::codec_named(variant.codec));
+      CHECK(std::ranges::count(variants, variant.name, &weft::CodecVariant::name) == 1);
+    }
   }
 }
