@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the tables of docs/results/srbf.md: tables 4.1 to 4.4 and figures 4.1 and 4.3 of paper 001 on checker, rings
-# and tissue. Usage: docs/make_srbf_results.sh FOLDER [TEXELS]
+# and tissue, and draws the figures as docs/images/papers/srbf_levels.svg. Usage: docs/make_srbf_results.sh FOLDER [TEXELS]
 # FOLDER keeps data and fits, and a second run goes on with them; TEXELS (16) a side. Needs jq (Debian: jq).
 # shellcheck disable=SC2016  # backquotes below are the page's
 set -euo pipefail
@@ -129,21 +129,31 @@ between() { value "$1.between.json" '. * 1000 | round / 10'; }
 picture() { value "$1.picture.json" '.relative_rmse * 1000 | round / 10'; }
 percent='(.relative_rmse * 1000 | round / 10)'
 
+cpu() { # BTF LABEL
+  tail -n 1 "$folder/$1-$2.cpu" | xargs printf %.0f
+}
+
 tables() {
   local count
   count=$(jq '.report.levels | length' "$folder/checker-optimal.srbf/codec.json")
   echo "Made by \`docs/make_srbf_results.sh FOLDER $texels\`: $texels x $texels texels, 81 x 81 directions, 64 spp, 4 bounces; J = 20, K = 3, $(nproc) cores."
-  printf '\n### Time (table 4.1)\n\nSeconds of one core, tissue: two cores halve them.\n\n| reparameterisation | seconds |\n|---|---:|\n'
-  for label in half-half-half half-light-view optimal; do
-    echo "| $label | $(tail -n 1 "$folder/tissue-$label.cpu" | xargs printf %.0f) |"
+  printf '\n### Time (table 4.1)\n\nSeconds of one core, all levels: two cores halve them. `terms` has the mipmap constraint and the smoothness term on, both of weight 0.01.\n\n'
+  echo "| reparameterisation | checker | rings | tissue |"
+  echo "|---|---:|---:|---:|"
+  for label in half-half-half half-light-view optimal terms-half-half-half terms-half-light-view terms-optimal; do
+    echo "| ${label/#terms-/terms, } | $(cpu checker "$label") | $(cpu rings "$label") | $(cpu tissue "$label") |"
   done
-  printf '\n### Size (tables 4.2 and 4.3)\n\n| J | K | bits | texture bytes, mips included | times below 24-bit input | relative RMSE of tissue, %% |\n|---|---|---|---|---|---|\n'
+  printf '\n### The data (table 4.2)\n\n| BTF | 24-bit input, bytes | in half floats on disk, bytes | directions | texels |\n|---|---:|---:|---|---|\n'
+  for btf in checker rings tissue; do
+    echo "| $btf | $((81 * 81 * texels * texels * 3)) | $(du -sb "$folder/$btf.btf" | cut -f 1) | 81 x 81 | $texels x $texels |"
+  done
+  printf '\n### Size (table 4.3)\n\n| J | K | finest level | bits | texture bytes, mips included | times below 24-bit input | relative RMSE of tissue, %% |\n|---|---|---|---|---|---|---|\n'
   for row in "20 half optimal" "10 half j10" "20 float float" "20 8 bits8"; do
     read -r j bits label <<<"$row"
-    echo "| $j | 3 | $bits | $(value "tissue-$label.json" .bytes) | $(value "tissue-$label.json" '.ratio * 10 | round / 10') |" \
+    echo "| $j | 3 | 0 | $bits | $(value "tissue-$label.json" .bytes) | $(value "tissue-$label.json" '.ratio * 10 | round / 10') |" \
       "$(value "tissue-$label.json" '.relative_rmse * 10000 | round / 100') |"
   done
-  printf '\n### Error by level (figures 4.1 and 4.3)\n\nRelative RMSE in %% of each mip level, level 0 the finest, before rounding to halfs.\n\n'
+  printf '\n### Error by level (figures 4.1 and 4.3)\n\nRelative RMSE in %% of each mip level, level 0 the finest, before rounding to halfs.\n\n![Relative RMSE by mip level](../images/papers/srbf_levels.svg)\n\n'
   echo "| BTF | kernels | $(seq -s ' | ' 0 $((count - 1))) | level 0, rounded | optimal is below by |"
   echo "|---|---|$(for ((i = 0; i < count; ++i)); do printf -- '---|'; done)---|---|"
   for btf in checker rings tissue; do
@@ -244,6 +254,14 @@ converged() {
     echo
   done
 }
+
+for btf in checker rings tissue; do
+  for label in "${labels[@]}"; do
+    jq -r --arg btf "$btf" --arg kernels "$label" \
+      '.report.levels | to_entries[] | [$btf, $kernels, .key, .value.relative_rmse * 100] | @tsv' \
+      "$folder/$btf-$label.srbf/codec.json"
+  done
+done | awk -f "$docs/plot_levels.awk" >"$docs/images/papers/srbf_levels.svg"
 
 page=$docs/results/srbf.md
 {
