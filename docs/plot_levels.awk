@@ -37,8 +37,8 @@ END {
   printf "<rect width=\"%d\" height=\"310\" fill=\"white\"/>\n", 70 + 220 * panels
   for (p = 1; p <= panels; ++p) panel(p, 50 + 220 * (p - 1))
   for (l = 1; l <= lines; ++l) {
-    printf "<rect x=\"%d\" y=\"289\" width=\"14\" height=\"3\" fill=\"%s\"/>\n", 30 + 115 * (l - 1), colours[l]
-    label(48 + 115 * (l - 1), 295, "start", name[l])
+    printf "<rect x=\"%d\" y=\"289\" width=\"14\" height=\"3\" fill=\"%s\"/>\n", 30 + 122 * (l - 1), colours[l]
+    label(48 + 122 * (l - 1), 295, "start", name[l])
   }
   print "</svg>"
 }

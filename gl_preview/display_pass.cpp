@@ -12,30 +12,36 @@ namespace weft {
 
 namespace {
 
-constexpr const char* exposure_source = R"(#version 450 core
+constexpr const char* srgb_source = R"(#version 450 core
+vec3 srgb_encoded(vec3 c) {
+  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
+}
+layout(location = 0) out vec4 colour;
+)";
+
+constexpr const char* exposure_main = R"(
 layout(binding = 0) uniform sampler2D picture;
 layout(location = 0) uniform float gain;
-layout(location = 0) out vec4 colour;
 void main() {
-  vec3 c = clamp(texelFetch(picture, ivec2(gl_FragCoord.xy), 0).rgb * gain, 0.0, 1.0);
-  vec3 encoded = mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
-  colour = vec4(encoded, 1.0);
+  vec3 c = texelFetch(picture, ivec2(gl_FragCoord.xy), 0).rgb * gain;
+  colour = vec4(srgb_encoded(clamp(c, 0.0, 1.0)), 1.0);
 }
 )";
 
-/// Viridis as polynomials of degree 6 [Zucker, "Colormap polynomials", 2018].
-constexpr const char* scale_source = R"(#version 450 core
-vec3 viridis(float t) {
-  const vec3 c0 = vec3(0.2777273272234177, 0.005407344544966578, 0.3340998053353061);
-  const vec3 c1 = vec3(0.1050930431085774, 1.404613529898575, 1.384590162594685);
-  const vec3 c2 = vec3(-0.3308618287255563, 0.214847559468213, 0.09509516302823659);
-  const vec3 c3 = vec3(-4.634230498983486, -5.799100973351585, -19.33244095627987);
-  const vec3 c4 = vec3(6.228269936347081, 14.17993336680509, 56.69055260068105);
-  const vec3 c5 = vec3(4.776384997670288, -13.74514537774601, -65.35303263337234);
-  const vec3 c6 = vec3(-5.435455855934631, 4.645852612178535, 26.3124352495832);
-  return c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * (c5 + t * c6)))));
+/// The scale of `weft compare`'s maps (study/colour_map.h): an arc of a helix in OKLab.
+constexpr const char* scale_source = R"(
+vec3 scale_colour(float t) {
+  float angle = radians(-80.0 - 150.0 * t);
+  vec3 lab = vec3(mix(0.25, 0.92, t), vec2(0.05, 0.06) + 0.16 * vec2(cos(angle), sin(angle)));
+  vec3 cones = vec3(dot(lab, vec3(1.0, 0.3963377774, 0.2158037573)),
+                    dot(lab, vec3(1.0, -0.1055613458, -0.0638541728)),
+                    dot(lab, vec3(1.0, -0.0894841775, -1.2914855480)));
+  cones = cones * cones * cones;
+  vec3 linear = vec3(dot(cones, vec3(4.0767416621, -3.3077115913, 0.2309699292)),
+                     dot(cones, vec3(-1.2684380046, 2.6097574011, -0.3413193965)),
+                     dot(cones, vec3(-0.0041960863, -0.7034186147, 1.7076147010)));
+  return srgb_encoded(clamp(linear, 0.0, 1.0));
 }
-layout(location = 0) out vec4 colour;
 )";
 
 constexpr const char* error_main = R"(
@@ -45,25 +51,25 @@ layout(location = 0) uniform float full_scale;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec3 d = abs(texelFetch(test, at, 0).rgb - texelFetch(reference, at, 0).rgb);
-  colour = vec4(viridis(clamp((d.r + d.g + d.b) / (3.0 * full_scale), 0.0, 1.0)), 1.0);
+  colour = vec4(scale_colour(clamp((d.r + d.g + d.b) / (3.0 * full_scale), 0.0, 1.0)), 1.0);
 }
 )";
 
 constexpr const char* legend_main = R"(
 layout(location = 0) uniform float width;
-void main() { colour = vec4(viridis(gl_FragCoord.x / width), 1.0); }
+void main() { colour = vec4(scale_colour(gl_FragCoord.x / width), 1.0); }
 )";
 
 }  // namespace
 
 DisplayPass::DisplayPass()
     : no_attributes_(GlVertexArray::make()),
-      exposure_(
-          link_graphics_program("exposure pass", full_screen_vertex_shader(), exposure_source)),
+      exposure_(link_graphics_program("exposure pass", full_screen_vertex_shader(),
+                                      std::string(srgb_source) + exposure_main)),
       error_(link_graphics_program("error map", full_screen_vertex_shader(),
-                                   std::string(scale_source) + error_main)),
+                                   std::string(srgb_source) + scale_source + error_main)),
       legend_(link_graphics_program("legend", full_screen_vertex_shader(),
-                                    std::string(scale_source) + legend_main)) {}
+                                    std::string(srgb_source) + scale_source + legend_main)) {}
 
 void DisplayPass::draw(const GlLinkedProgram& program, const RenderTarget& target) const {
   target.bind();

@@ -14,8 +14,8 @@ class DisplayPass {
   /// `picture` times 2^exposure, sRGB-encoded, into `target` of the same size.
   void show(unsigned picture, float exposure, const RenderTarget& target) const;
 
-  /// Mean absolute difference of the channels, as colours: dark blue 0, yellow `full_scale` and
-  /// more.
+  /// Mean absolute difference of the channels, as colours: dark purple 0, yellow `full_scale`
+  /// and more, the scale of `weft compare`'s maps.
   void show_error(unsigned reference, unsigned test, float full_scale,
                   const RenderTarget& target) const;
 

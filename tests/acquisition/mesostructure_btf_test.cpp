@@ -136,7 +136,8 @@ void check_white(const std::string& name, const std::vector<Direction>& views) {
 
 TEST_CASE("a mesostructure painted white sends back all light", "[heavy]") {
   for (const std::string& name : mesostructure_names()) {
-    check_white(name, {from_spherical(radians(60.0), 0.3)});
+    check_white(name, {Direction(0, 0, 1), from_spherical(radians(60.0), 0.3),
+                       from_spherical(radians(75.0), 3.9)});
   }
 }
 
