@@ -271,9 +271,10 @@ void add_acquire(CLI::App& app, Session& session) {
   command->add_option("--alpha", options->alpha,
                       "Also write coverage, part alpha: the share of a texel's rays that hit at or "
                       "above this height (tiles)");
-  CLI::Option* validate =
-      command->add_option("--validate", options->validate,
-                          "Also trace N random pairs between the directions into OUT/offgrid/");
+  CLI::Option* validate = command->add_option(
+      "--validate", options->validate,
+      "Also trace N random pairs between the directions into OUT/offgrid/; of a "
+      "dataset that is finished already, these alone");
   add_memory_option(
       *command, options->memory,
       "Most memory, e.g. 4GiB: fewer views are traced at once; 0: as many as threads");
@@ -286,7 +287,8 @@ void add_acquire(CLI::App& app, Session& session) {
       ->add_flag("--finish", options->finish,
                  "Trace nothing: write btf.json once all shards' views are there; exit 1 naming "
                  "those that are not")
-      ->excludes(shard);
+      ->excludes(shard)
+      ->excludes(validate);
   command->callback([options, &session] { run(*options, session); });
 }
 

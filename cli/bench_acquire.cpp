@@ -5,17 +5,20 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "btf/error.h"
+#include "cli/bar_report.h"
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "cli/scene_folder.h"
 #include "settings/nearest_name.h"
 #include "study/acquisition_bench.h"
+#include "study/machine.h"
 
 namespace weft::cli {
 
@@ -23,16 +26,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names in the report, and their files below scenes/mesostructures.
-const std::vector<std::pair<std::string, std::string>> structures = {
-    {"checker", "checker_lambert.toml"},
-    {"checker_glossy", "checker.toml"},
-    {"rings", "rings.toml"},
-    {"tissue", "tissue.toml"}};
+struct Structure {
+  std::string name;  // in the report
+  std::string file;  // below scenes/mesostructures
+  std::vector<std::string> overrides;
+};
+
+const std::vector<Structure> structures = {
+    {"checker", "checker_lambert.toml", {}},
+    {"checker_128", "checker_lambert.toml", {"resolution=128"}},  // quads a side; else 256
+    {"checker_glossy", "checker.toml", {}},
+    {"rings", "rings.toml", {}},
+    {"tissue", "tissue.toml", {}}};
 
 std::vector<std::string> names_of_structures() {
   std::vector<std::string> names;
-  for (const auto& [name, file] : structures) names.push_back(name);
+  for (const Structure& structure : structures) names.push_back(structure.name);
   return names;
 }
 
@@ -62,6 +71,7 @@ nlohmann::ordered_json json_of(const AcquisitionBench& b) {
                                  {"table_rays", s.table_rays},
                                  {"answers_checked", s.answers_checked},
                                  {"wrong_answers", s.wrong_answers},
+                                 {"rays_traced_on", s.rays_traced_on},
                                  {"bounce_rays", s.bounce_rays},
                                  {"open_bounces", s.open_bounces},
                                  {"open_checked", s.open_checked},
@@ -81,9 +91,9 @@ nlohmann::ordered_json json_of(const AcquisitionBench& b) {
   return json;
 }
 
-std::string file_of(const std::string& name) {
-  for (const auto& [known, file] : structures) {
-    if (known == name) return file;
+const Structure& structure_named(const std::string& name) {
+  for (const Structure& structure : structures) {
+    if (structure.name == name) return structure;
   }
   throw bad_input("--structures", fmt::format("there is no structure '{}'", name),
                   name_hint(name, names_of_structures()));
@@ -96,11 +106,11 @@ std::vector<std::pair<std::string, Mesostructure>> read_structures(const std::st
   for (std::size_t begin = 0; begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string name = list.substr(begin, end - begin);
-    const std::string file = file_of(name);
+    const Structure& structure = structure_named(name);
     for (const auto& [earlier, mesostructure] : result) {
       if (earlier == name) throw bad_input("--structures", fmt::format("names '{}' twice", name));
     }
-    result.emplace_back(name, read_mesostructure(folder / file));
+    result.emplace_back(name, read_mesostructure(folder / structure.file, structure.overrides));
     begin = end + 1;
   }
   return result;
@@ -117,11 +127,13 @@ void bench_acquire(const Options& options, Session& session) {
   const auto chosen = read_structures(options.structures, folder);
   session.say(fmt::format("{:15} {:>9} {:>12} {:>12} {:>9} {:>9} {:>9}", "", "seconds", "samples/s",
                           "rays/s", "roofline", "speedup", "RMSE"));
+  std::vector<Bar> bars;
   for (const auto& [name, mesostructure] : chosen) {
     Progress progress(name, session.quiet || session.json);
     const fs::path dataset = fs::temp_directory_path() / fmt::format("weft_bench_{}.btf", getpid());
     const AcquisitionBench b = bench_acquisition(name, mesostructure, settings, dataset, progress);
     session.measured["structures"][name] = json_of(b);
+    std::ranges::move(acquisition_bars(b), std::back_inserter(bars));
     session.say(fmt::format("{:15} {:9.2f} {:12.4g} {:12.4g} {:9.2f} {:9.1f} {:9.3g}", name,
                             b.full_dataset_seconds, b.samples_per_second, b.rays_per_second,
                             b.roofline_ratio, b.speedup_equal_rmse, b.rmse));
@@ -138,6 +150,10 @@ void bench_acquire(const Options& options, Session& session) {
         {{"factor", cost.factor}, {"seconds", cost.seconds}});
     session.say(fmt::format("{:8} x {}: {:.3f} s", cost.size, cost.factor, cost.seconds));
   }
+  report_bars(bars, session);
+  const Machine machine = this_machine();
+  session.measured["processor"] = machine.processor;
+  session.measured["cores"] = machine.cores;
   session.measured["texels"] = options.texels;
   session.measured["spp"] = options.spp;
   session.measured["directions"] = options.directions;
@@ -156,7 +172,8 @@ void add_bench_acquire(CLI::App& bench, Session& session) {
                                            "size");
   acquire
       ->add_option("--structures", options->structures,
-                   "Which to measure, separated by commas; checker is the Lambert one")
+                   "Which to measure, separated by commas; checker is the Lambert one, "
+                   "checker_128 the same of 128 x 128 quads")
       ->capture_default_str();
   acquire->add_option("--texels", options->texels, "Texels a side of the tile")
       ->capture_default_str()

@@ -13,6 +13,7 @@
 
 #include "btf/btf_file.h"
 #include "btf/error.h"
+#include "cli/bar_report.h"
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "cli/scene_folder.h"
@@ -197,21 +198,6 @@ std::vector<Bar> bench_comparisons(const std::vector<CodecVariant>& variants,
     std::ranges::move(comparison_bars(structure, fits), std::back_inserter(bars));
   }
   return bars;
-}
-
-void report_bars(const std::vector<Bar>& bars, Session& session) {
-  session.measured["bars"] = Json::array();
-  session.say("");
-  for (const Bar& bar : bars) {
-    session.measured["bars"].push_back({{"what", bar.what},
-                                        {"value", bar.value},
-                                        {bar.at_least ? "at_least" : "below", bar.limit},
-                                        {"unit", bar.unit},
-                                        {"met", bar.met()}});
-    session.say(fmt::format("{}  {:70} {:8.2f} {} ({} {:g})", bar.met() ? "met   " : "MISSED",
-                            bar.what, bar.value, bar.unit, bar.at_least ? "at least" : "below",
-                            bar.limit));
-  }
 }
 
 void bench_codecs(const Options& options, Session& session) {

@@ -5,17 +5,15 @@ set -euo pipefail
 
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bench=${1:?the JSON file of a bench}
-processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
-processor+=", $(awk -F': *' '/^cpu family/ {f = $2} /^model\t/ {print "family " f " model " $2; exit}' /proc/cpuinfo)"
 
-jq -r --arg processor "$processor" --arg threads "$(nproc)" '
+jq -r '
   def round(n): . * pow(10; n) | floor / pow(10; n);
   def row: "| " + (map(tostring) | join(" | ")) + " |";
   . as $all | .structures as $s | ($s | keys_unsorted) as $names |
   "# Speed of acquisition",
   "",
   "Made by `docs/make_bench_results.sh` from `./weft bench acquire --json`: whole datasets of \(.texels) x \(.texels) texels, \(.directions) views and lights,",
-  "\(.spp) spp, \(.max_bounces) bounces, from the structure to the written files; \($processor), \($threads) threads.",
+  "\(.spp) spp, \(.max_bounces) bounces, from the structure to the written files; \(.processor), \(.cores) threads.",
   "",
   (["", $names[]] | row),
   (["---", ($names[] | "---:")] | row),
@@ -34,8 +32,15 @@ jq -r --arg processor "$processor" --arg threads "$(nproc)" '
   (["wrong among the checked ones of these", ($names[] | "\($s[.].open_wrong) of \($s[.].open_checked)")] | row),
   (["values left below zero, stored as 0", ($names[] | $s[.].negative_means)] | row),
   "",
-  "`checker` is the Lambert one (`checker_lambert.toml`), `checker_glossy` is `checker.toml`. The plain way traces pair by pair, with single rays and plain random",
+  "`checker` is the Lambert one (`checker_lambert.toml`), of 256 x 256 quads, `checker_128` the same of 128 x 128, `checker_glossy` is `checker.toml`. The plain way traces pair by pair, with single rays and plain random",
   "numbers, at \($s[$names[0]].naive_spp) spp, on some pairs; errors are from pairs of runs with different seeds. Embree alone: every eighth view and fourth block of texels.",
+  "",
+  "What two cores are to reach:",
+  "",
+  "| | measured | to reach | |",
+  "|---|---:|---:|---|",
+  (.bars[] | [.what, "\(.value | round(1)) \(.unit)", (if has("below") then "below \(.below)" else "at least \(.at_least)" end),
+    (if .met then "met" else "**missed**" end)] | row),
   "",
   "With `--indirect cache`, a biased mode for Lambert materials (against tracing with four times the samples):",
   "",

@@ -8,6 +8,7 @@
 
 #include "acquisition/acquire.h"
 #include "btf/progress.h"
+#include "study/bar.h"
 
 namespace weft {
 
@@ -25,6 +26,7 @@ struct IndirectCacheBench {
 /// What one structure's acquisition takes. Times are of the wall, with all threads.
 struct AcquisitionBench {
   std::string structure;
+  bool lambert = false;             ///< every material
   double full_dataset_seconds = 0;  ///< from the structure to the written dataset
   double samples_per_second = 0;    ///< texel x pair x spp
   double rays_per_second = 0;       ///< really traced
@@ -53,11 +55,14 @@ AcquisitionBench bench_acquisition(const std::string& name, const Mesostructure&
                                    const AcquisitionSettings& settings,
                                    const std::filesystem::path& folder, Progress& progress);
 
+/// What two cores are to reach on 64 x 64 texels, ubo81 and 64 spp: more where all is Lambert.
+std::vector<Bar> acquisition_bars(const AcquisitionBench& bench);
+
 /// One row of the table of costs: seconds of tracing with one size multiplied.
 struct AcquisitionCost {
   std::string size;  ///< texels (a side's square), spp, views or lights
   int factor = 1;
-  double seconds = 0;
+  double seconds = 0;  ///< the least of three runs; without the visibility table's making
 };
 
 /// How the time grows with each size: 1, 2 and 4 times a quarter of what `settings` say.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "study/bar.h"
 #include "study/codec_bench.h"
 
 namespace weft {
@@ -27,16 +28,6 @@ std::span<const CodecVariant> factor_variants();
 /// The fits that are held against each other on one structure: lobes, PTM and Lafortune models, and
 /// SRBF by its variables, with iterations until little changes.
 std::span<const CodecVariant> compared_variants();
-
-/// One number and what it is held to.
-struct Bar {
-  std::string what;
-  std::string unit;  ///< may be empty
-  double value = 0;
-  double limit = 0;
-  bool at_least = false;  ///< else the value is to lie below the limit
-  bool met() const { return at_least ? value >= limit : value < limit; }
-};
 
 using CodecBenches = std::map<std::string, CodecBench>;
 

@@ -25,8 +25,13 @@ std::optional<std::string> value_in(const char* file, const std::string& key, ch
 }  // namespace
 
 Machine this_machine() {
-  return {value_in("/proc/cpuinfo", "model name", ':').value_or("unknown processor"),
-          static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+  constexpr const char* cpus = "/proc/cpuinfo";
+  std::string processor = value_in(cpus, "model name", ':').value_or("unknown processor");
+  // Virtual machines tell no more by name than the brand.
+  const auto family = value_in(cpus, "cpu family", ':');
+  const auto model = value_in(cpus, "model\t", ':');
+  if (family && model) processor += ", family " + *family + " model " + *model;
+  return {processor, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
           value_in("/etc/os-release", "PRETTY_NAME", '=').value_or("unknown system")};
 }
 

@@ -6,7 +6,7 @@
 namespace weft {
 
 struct Machine {
-  std::string processor;  ///< model name; "unknown processor" where the system does not tell
+  std::string processor;  ///< name, family, model; "unknown processor" where no name is told
   int cores = 1;          ///< hardware threads
   std::string system;     ///< e.g. "Debian GNU/Linux 12 (bookworm)"
 };

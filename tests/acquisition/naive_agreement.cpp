@@ -1,5 +1,7 @@
 #include "tests/acquisition/naive_agreement.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -35,6 +37,8 @@ Agreement agreement(const Mesostructure& mesostructure, int naive_spp, int spp) 
     for (std::size_t l = 0; l < compared; ++l) {
       const NaiveEstimate plain =
           trace_pair_naively(*structure, naive, view, lights[l], hash_coordinates(n, l));
+      std::array<double, 3> pair_difference{};
+      std::array<double, 3> pair_variance{};
       for (std::size_t i = 0; i < plain.values.size(); ++i, ++n) {
         const std::size_t j = l * plain.values.size() + i;
         const double error = traced.texel_errors[j];
@@ -46,6 +50,12 @@ Agreement agreement(const Mesostructure& mesostructure, int naive_spp, int spp) 
         result.difference += difference;
         variance += both;
         sum += plain.values[i];
+        pair_difference[i % 3] += difference;
+        pair_variance[i % 3] += both;
+      }
+      for (std::size_t c = 0; c < 3; ++c) {
+        result.largest_pair_z = std::max(
+            result.largest_pair_z, std::abs(pair_difference[c]) / std::sqrt(pair_variance[c]));
       }
     }
   }

@@ -8,10 +8,11 @@
 namespace weft::test {
 
 struct Agreement {
-  double mean_square_z = 0;  ///< 1 where errors are told rightly, less where conservatively
-  double outside = 0;        ///< share of |z| > 4: chance has 6e-5
-  double difference = 0;     ///< of the means over all, relative
-  double deviation = 0;      ///< standard error of that difference, relative
+  double mean_square_z = 0;   ///< 1 where errors are told rightly, less where conservatively
+  double outside = 0;         ///< share of |z| > 4: chance has 6e-5
+  double difference = 0;      ///< of the means over all, relative
+  double deviation = 0;       ///< standard error of that difference, relative
+  double largest_pair_z = 0;  ///< |z| of a pair's mean over the tile, a channel
   std::int64_t open_bounces = 0;
 };
 

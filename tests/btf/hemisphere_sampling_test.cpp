@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 #include "btf/error.h"
 #include "btf/random.h"
@@ -32,6 +33,27 @@ TEST_CASE("named sets have their sizes and rings") {
   const std::vector<Direction> ubo = named_directions("ubo81");
   CHECK(degrees(theta_of(ubo[80])) == Approx(75));
   CHECK(degrees(phi_of(ubo[8])) == Approx(30));
+  const std::vector<Direction> dome = named_directions("ubo151");
+  std::size_t begin = 0;
+  for (const auto& [theta, count, offset] :
+       std::vector<std::tuple<double, std::size_t, double>>{{0, 1, 0},
+                                                            {11, 6, 15},
+                                                            {23.5, 12, 0},
+                                                            {30, 12, 15},
+                                                            {37.5, 12, 0},
+                                                            {45, 18, 0},
+                                                            {52.5, 18, 7.5},
+                                                            {60, 24, 0},
+                                                            {67.5, 24, 7.5},
+                                                            {75, 24, 0}}) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const double phi =
+          radians(offset + 360.0 * static_cast<double>(i) / static_cast<double>(count));
+      CHECK((dome[begin + i] - from_spherical(radians(theta), phi)).length() < 1e-5F);
+    }
+    begin += count;
+  }
+  CHECK(begin == dome.size());
   for (const Direction& d : named_directions("fibonacci:1024")) {
     CHECK(degrees(theta_of(d)) <= 89.9F + 1e-3F);
   }

@@ -139,6 +139,7 @@ TEST_CASE("acquire refuses errors, heights, pairs and memory that cannot be") {
   refused({"--validate", "-1"}, {"--validate", "-1"});
   refused({"--validate", "some"}, {"--validate", "some"});
   refused({"--validate", "2", "--shard", "0/2"}, {"--validate", "--shard"});
+  refused({"--validate", "2", "--finish"}, {"--validate", "--finish"});
   refused({"--memory", "-1"}, {"--memory", "-1"});
   refused({"--memory", "4 apples"}, {"--memory", "apples", "gib"});
   refused({"--memory", "1MiB"}, {"--memory", "is 1 MiB", "at least", "MiB"});
@@ -237,7 +238,7 @@ TEST_CASE("bench refuses what it cannot measure, before it measures anything") {
     arguments.insert(arguments.end(), more.begin(), more.end());
     mistakes.refused(arguments, fragments);
   };
-  const std::string all = "checker, checker_glossy, rings, tissue";
+  const std::string all = "checker, checker_128, checker_glossy, rings, tissue";
   refused({"--structures", "rings,checkers"}, {"--structures", "'checkers'", "'checker'", all});
   refused({"--structures", "good.toml"}, {"--structures", "'good.toml'", all});
   refused({"--structures", ""}, {"--structures", "''", all});

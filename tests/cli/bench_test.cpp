@@ -1,4 +1,5 @@
 // weft bench codecs, as a user calls it: what it prints, and what it keeps.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -106,6 +107,41 @@ TEST_CASE("bench codecs compares fitted codecs on several structures") {
              bar["value"] == lobes / ptm && bar["below"] == (structure == "tissue" ? 1.0 : 0.5);
     });
     CHECK(told == 1);
+  }
+}
+
+TEST_CASE("bench acquire tells speeds, costs and what they are held to, and leaves no dataset") {
+  const TemporaryFolder temporary;
+  const std::string scenes = std::string(WEFT_SOURCE_DIR) + "/scenes";
+  const Outcome outcome =
+      run_program({"env", "TMPDIR=" + temporary.path.string(), WEFT_BINARY, "bench", "acquire",
+                   "--structures", "checker_128,rings", "--texels", "8", "--spp", "2",
+                   "--directions", "regular:2x4", "--scenes", scenes, "--json"},
+                  temporary.path);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(outcome.err.empty());
+  CHECK(files_below(temporary.path).empty());
+  const Json json = Json::parse(outcome.out);
+  CHECK(names_in(json["structures"]) == std::vector<std::string>{"checker_128", "rings"});
+  for (const auto& [name, structure] : json["structures"].items()) {
+    INFO(name);
+    for (const std::string key :
+         {"roofline_ratio", "speedup_equal_rmse", "full_dataset_seconds", "samples_per_second"})
+      CHECK(structure[key].get<double>() > 0);
+    // Every sample of every texel and pair, over the time.
+    CHECK(structure["samples_per_second"].get<double>() ==
+          Approx(64.0 * 8 * 8 * 2 / structure["full_dataset_seconds"].get<double>()));
+    CHECK(structure.contains("indirect_cache") == (name == "checker_128"));  // Lambert alone
+    const double goal = name == "rings" ? 40 : 120;
+    CHECK(std::ranges::count_if(json["bars"], [&](const Json& bar) {
+            return bar["what"] == name + ": samples a second" && bar["at_least"] == goal &&
+                   bar["value"] == structure["samples_per_second"].get<double>() / 1e6;
+          }) == 1);
+  }
+  CHECK(names_in(json["costs"]) == std::vector<std::string>{"texels", "spp", "views", "lights"});
+  for (const auto& [size, rows] : json["costs"].items()) {
+    REQUIRE(rows.size() == 3);
+    for (const Json& row : rows) CHECK(row["seconds"].get<double>() > 0);
   }
 }
 

@@ -124,7 +124,7 @@ TEST_CASE("Frames, texcoords and lights are the path tracer's on every shape") {
   }
 }
 
-TEST_CASE("Every codec looks the same in the preview and in the path tracer") {
+TEST_CASE("Every codec looks the same in the preview and in the path tracer", "[heavy]") {
   if (!gl_or_skip()) return;
   const auto btf = procedural_btf(8, 8, "ubo81", PixelType::half);
   for (FittedVariant& variant : fitted_variants(btf)) {
