@@ -42,7 +42,7 @@ std::vector<Case> cases(const std::string& resolution = "resolution=16") {
   std::vector<Case> all;
   for (const Codec& codec : codecs()) {
     all.push_back({codec.name, {}});
-    if (codec.name == "srbf") all.back().parameters = {"iterations=10"};
+    if (codec.name == "srbf") all.back().parameters = {"iterations=30"};
   }
   all.push_back({"cmf", {"bits=float"}});
   all.push_back({"cmf", {"rotate=false"}});
