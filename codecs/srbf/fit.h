@@ -26,7 +26,8 @@ struct FitOptions {
   bool restarts = true;      ///< from neighbours' kernels, where those fit a texel better
 };
 
-/// @throws Error  for an unknown key or a value out of range.
+/// What is not named has the defaults above, but for `Filtering::numbers`, which brings pulls.
+/// @throws Error  for an unknown key, a value out of range, or pulls that could do nothing.
 FitOptions fit_options(const Settings& parameters);
 /// Lines "name = default   meaning".
 std::string parameter_help();

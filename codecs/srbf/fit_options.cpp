@@ -33,10 +33,44 @@ Modes modes_parameter(const Settings& parameters) {
   return modes;
 }
 
+Filtering filtering_parameter(const Settings& parameters) {
+  return parameters.choice("filtering", {"values", "numbers"}) == "numbers" ? Filtering::numbers
+                                                                            : Filtering::values;
+}
+
+// Numbers of texels that nothing draws together mean nothing when blended: errors of several times
+// the data.
+FitOptions defaults_for(Filtering filtering) {
+  FitOptions options;
+  options.filtering = filtering;
+  if (filtering == Filtering::values) return options;
+  options.mip_weight = 0.01;
+  options.smooth_weight = 0.01;
+  options.robust = false;
+  options.sweeps = 3;
+  return options;
+}
+
+void refuse_pulls_in_vain(const Settings& parameters, const FitOptions& options) {
+  if (options.smooth_weight > 0 && options.sweeps == 0) {
+    throw bad_input(
+        parameters.where(parameters.has("smooth_weight") ? "smooth_weight" : "sweeps"),
+        fmt::format("smooth_weight = {} with sweeps = 0: only sweeps pull towards neighbours",
+                    options.smooth_weight),
+        "set sweeps to 1 or more, or smooth_weight to 0");
+  }
+  if (options.robust && options.filtering == Filtering::numbers) {
+    throw bad_input(parameters.where("robust"),
+                    "robust = true with filtering = numbers: it lets go of neighbours across an "
+                    "edge, and there blended numbers are wrong",
+                    "leave robust out, or blend values");
+  }
+}
+
 }  // namespace
 
 FitOptions fit_options(const Settings& parameters) {
-  FitOptions options;
+  FitOptions options = defaults_for(filtering_parameter(parameters));
   const auto count = [&](const char* key, std::int64_t fallback, std::int64_t least,
                          std::int64_t most) {
     return static_cast<int>(parameters.integer(key, fallback, least, most));
@@ -46,9 +80,6 @@ FitOptions fit_options(const Settings& parameters) {
   options.quantity =
       parameters.choice("quantity", {"B", "f"}) == "f" ? Quantity::over_cosine : Quantity::radiance;
   options.storage = storage_parameter(parameters);
-  options.filtering = parameters.choice("filtering", {"values", "numbers"}) == "numbers"
-                          ? Filtering::numbers
-                          : Filtering::values;
   options.iterations = count("iterations", options.iterations, 1, 10000);
   options.starts = count("starts", options.starts, 1, 100);
   options.sweeps = count("sweeps", options.sweeps, 0, 100);
@@ -56,6 +87,7 @@ FitOptions fit_options(const Settings& parameters) {
   options.smooth_weight = parameters.number("smooth_weight", options.smooth_weight, 0, 1e6);
   options.robust = parameters.flag("robust", options.robust);
   options.restarts = parameters.flag("restarts", options.restarts);
+  refuse_pulls_in_vain(parameters, options);
   parameters.finish();
   return options;
 }
@@ -64,21 +96,24 @@ std::string parameter_help() {
   return "bits = half               half | 8 | float: what the textures hold\n"
          "em_angles = false         true: the initial guess moves the angles, too (the paper)\n"
          "filtering = values        between texels and levels, of B; numbers: of what is fitted, "
-         "by "
-         "the GPU's filter (wants smooth_weight)\n"
+         "by the GPU's filter, with defaults of its own below\n"
          "iterations = 100          of L-BFGS, each time that a texel is fitted\n"
          "kernels = 20              J, 1 to 64\n"
-         "mip_weight = 0            c_mip: pull towards the parent's numbers\n"
+         "mip_weight = 0            c_mip: pull towards the parent's numbers; 0.01 with "
+         "filtering = numbers\n"
          "modes = optimal           optimal: angles are fitted; or fixed: half-half-half | "
          "half-difference | half-light-view | in-out\n"
          "modes_a_kernel = 3        K, 1 to 4; fixed modes have their own\n"
          "multivariate = true       false: one mode a kernel (the univariate SRBF)\n"
          "quantity = B              B, or f = B / cos(theta_light): what the kernels sum up to\n"
          "restarts = true           from a neighbour's kernels, where they fit a texel better\n"
-         "robust = true             neighbours across an edge don't pull; false: the paper\n"
-         "smooth_weight = 0         c_smooth: pull towards the 5 x 5 neighbours' numbers\n"
+         "robust = true             neighbours across an edge don't pull; false: the paper, and "
+         "with filtering = numbers\n"
+         "smooth_weight = 0         c_smooth: pull of the 5 x 5 neighbours' numbers in "
+         "sweeps; 0.01 with filtering = numbers\n"
          "starts = 4                descents at the top level, each from another guess\n"
-         "sweeps = 1                over a level, after the one that starts from its parents\n";
+         "sweeps = 1                over a level, after the one that starts from its "
+         "parents; 3 with filtering = numbers\n";
 }
 
 std::string to_json(const FitOptions& options) {

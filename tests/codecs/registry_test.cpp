@@ -59,8 +59,9 @@ std::vector<Case> cases(const std::string& resolution = "resolution=16") {
   all.push_back({"cmf", {"clusters=17", "refine=0", "levels=false", "clustering=tree"}});
   all.push_back({"cmf", {"factors=light,half,difference,view", "terms=2", "metric=cosine"}});
   all.push_back({"hf", {"bits=float", "clustered=false"}});
-  all.push_back(
-      {"srbf", {"bits=8", "kernels=5", "modes=in-out", "quantity=f", "filtering=numbers"}});
+  all.push_back({"srbf",
+                 {"bits=8", "kernels=5", "modes=in-out", "quantity=f", "filtering=numbers",
+                  "smooth_weight=0", "mip_weight=0", "sweeps=1"}});
   all.push_back({"srbf", {"bits=float", "kernels=17", "iterations=10", "multivariate=false"}});
   all.push_back({"cmf", {"terms=3", "bits=float", "rotate=true", "order=half-last"}});
   all.push_back({"lobes", {"bits=float", "lobes=1"}});

@@ -234,7 +234,7 @@ TEST_CASE("SRBF: a robust penalty smooths each material and leaves the edge betw
   CHECK(error_of(robust) < 0.5 * error_of(square));
 }
 
-TEST_CASE("SRBF: numbers that the GPU filters err less with a smoothness term") {
+TEST_CASE("SRBF: numbers that the GPU filters err less with a smoothness term, their default") {
   const auto btf = realistic_btf(8, "regular:3x6");
   const auto error = [&](const std::vector<std::string>& pulls) {
     std::vector<std::string> parameters = {"kernels=6", "iterations=30", "robust=false",
@@ -258,7 +258,12 @@ TEST_CASE("SRBF: numbers that the GPU filters err less with a smoothness term") 
     }
     return std::sqrt(difference / square);
   };
+  const double without = error({});
   const double smooth = error({"smooth_weight=1e-2", "mip_weight=1e-2"});
   CHECK(smooth < 0.2);
-  CHECK(smooth < 0.25 * error({}));
+  CHECK(smooth < 0.25 * without);
+  // Asked for alone, they bring it along.
+  const double by_default = error({"filtering=numbers"});
+  CHECK(by_default < 0.2);
+  CHECK(by_default < 0.25 * without);
 }

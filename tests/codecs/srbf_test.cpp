@@ -106,9 +106,48 @@ TEST_CASE("SRBF: modes that have a K of their own take no other") {
                     Catch::Contains("multivariate = false has 1"));
 }
 
+TEST_CASE("SRBF: numbers that are to be blended bring their pulls, each set by its key") {
+  const auto options = [](const std::vector<std::string>& parameters) {
+    return fit_options(Settings::from_text("", "test", parameters));
+  };
+  const FitOptions values = options({});
+  CHECK(values.filtering == Filtering::values);
+  CHECK(values.smooth_weight == 0);
+  CHECK(values.mip_weight == 0);
+  CHECK(values.robust);
+  CHECK(values.sweeps == 1);
+  const FitOptions numbers = options({"filtering=numbers"});
+  CHECK(numbers.filtering == Filtering::numbers);
+  CHECK(numbers.smooth_weight == 0.01);
+  CHECK(numbers.mip_weight == 0.01);
+  CHECK(!numbers.robust);
+  CHECK(numbers.sweeps == 3);
+  const FitOptions named =
+      options({"filtering=numbers", "smooth_weight=0.5", "mip_weight=0.25", "sweeps=2"});
+  CHECK(named.smooth_weight == 0.5);
+  CHECK(named.mip_weight == 0.25);
+  CHECK(named.sweeps == 2);
+}
+
+TEST_CASE("SRBF: pulls that could do nothing, or harm, are refused by name") {
+  const auto options = [](const std::vector<std::string>& parameters) {
+    return fit_options(Settings::from_text("", "test", parameters));
+  };
+  CHECK_THROWS_WITH(options({"smooth_weight=0.1", "sweeps=0"}),
+                    Catch::Contains("smooth_weight = 0.1") && Catch::Contains("sweeps = 0"));
+  CHECK_THROWS_WITH(options({"filtering=numbers", "sweeps=0"}),
+                    Catch::Contains("smooth_weight = 0.01") && Catch::Contains("sweeps = 0"));
+  CHECK_THROWS_WITH(options({"filtering=numbers", "robust=true"}),
+                    Catch::Contains("robust = true") && Catch::Contains("numbers"));
+  CHECK_NOTHROW(options({"sweeps=0", "mip_weight=1"}));
+  CHECK_NOTHROW(options({"filtering=numbers", "sweeps=0", "smooth_weight=0"}));
+  CHECK_NOTHROW(options({"filtering=numbers", "robust=false"}));
+}
+
 TEST_CASE("SRBF: between texels and levels lies the blend of what they are, or of their numbers") {
   const auto btf = realistic_btf(2, "regular:3x6");
-  const auto found = fitted(btf, {"bits=float", "kernels=3", "iterations=20", "filtering=numbers"});
+  const auto found = fitted(btf, {"bits=float", "kernels=3", "iterations=20", "filtering=numbers",
+                                  "smooth_weight=0", "mip_weight=0", "sweeps=1"});
   const Model& model = model_of(*found);
   const Layout layout = model.layout();
   const Texcoord uv(0.25F, 0.75F);  // texel (0, 0)
@@ -198,7 +237,7 @@ TEST_CASE("SRBF: a codec.json that names what there is not is refused") {
 
 TEST_CASE("SRBF: an interrupted fit continues from its last level, to the same bytes") {
   const auto btf = realistic_btf(4, "regular:3x6");
-  const std::vector<std::string> parameters = {"kernels=4", "iterations=15"};
+  const std::vector<std::string> parameters = {"kernels=4", "iterations=15", "robust=false"};
   const TemporaryFolder folder;
   const auto kept = folder.path / "kept";
   const std::vector<float> whole = model_of(*fitted(btf, parameters, kept)).values;
@@ -207,11 +246,14 @@ TEST_CASE("SRBF: an interrupted fit continues from its last level, to the same b
   const bool same = model_of(*fitted(btf, parameters, kept)).values == whole;
   CHECK(same);
   CHECK(std::filesystem::exists(kept / "level_0.f64"));
-  // Rounding and filtering come later: the pieces of 3 levels, fixed and free, serve others too.
+  // Rounding and filtering come later: the pieces of 3 levels, fixed and free, serve others too,
+  // whose pulls are the same.
   Progress progress;
   progress.keep_in(kept);
-  const FitOptions others = fit_options(Settings::from_text(
-      "", "test", {"kernels=4", "iterations=15", "bits=float", "filtering=numbers"}));
+  const FitOptions others = fit_options(
+      Settings::from_text("", "test",
+                          {"kernels=4", "iterations=15", "bits=float", "filtering=numbers",
+                           "smooth_weight=0", "mip_weight=0", "sweeps=1"}));
   fit(*btf, others, progress);
   CHECK(progress.reported().at("pieces_kept") == 6);
   // What is kept is used: the fit of other kernels under the name of the top tells.
