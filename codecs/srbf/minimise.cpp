@@ -62,7 +62,10 @@ bool minimise(std::span<double> x, const Value& value, const DescentLimits& limi
   parameters.delta = limits.decrease;
   parameters.epsilon = 1e-9;
   double end = 0;
-  lbfgs(padded, vector.get(), &end, ask, is_enough, &search, &parameters);
+  // Most codes below 0 are no failure: iterations used up, or a line search that finds nothing
+  // lower within rounding, which at a start that is a minimum already is at once.
+  const int code = lbfgs(padded, vector.get(), &end, ask, is_enough, &search, &parameters);
+  if (code == LBFGSERR_OUTOFMEMORY) throw std::bad_alloc();
   std::ranges::copy(search.best, x.begin());
   return std::isfinite(search.least) &&
          std::ranges::all_of(search.best, [](double v) { return std::isfinite(v); });

@@ -16,7 +16,9 @@ struct DescentLimits {
 
 /// Lowers `value`, which answers f(x) and writes its gradient, from `x` on, which it replaces by
 /// the best point found: never a worse one than at the start.
-/// @return whether the end is finite and the search did not break off at its start.
+/// @return whether the end and its value are finite. A search that finds nothing lower than its
+///         start has not failed: the start may be a minimum.
+/// @throws std::bad_alloc
 bool minimise(std::span<double> x,
               const std::function<double(std::span<const double>, std::span<double>)>& value,
               const DescentLimits& limits);
