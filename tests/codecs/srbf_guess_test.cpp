@@ -97,6 +97,46 @@ TEST_CASE("SRBF: angles that the guess moves run to the half-way vector, others 
   }
 }
 
+TEST_CASE("SRBF: bandwidths of the guess are at most 4, on data however peaked, from any samples") {
+  // A mirror's peak, and one that two samples alone see: unheld, their lambda would grow without
+  // end.
+  const auto mirror = synthetic_btf(
+      1, 1, "regular:4x10", "regular:4x10",
+      [](int, int, const Direction& light, const Direction& view) {
+        return Rgb(0.001F + 50 * std::pow(std::max((light + view).normalized().z, 0.0F), 2000.0F));
+      });
+  const auto two_pairs = synthetic_btf(1, 1, "regular:4x10", "regular:4x10",
+                                       [](int, int, const Direction& light, const Direction& view) {
+                                         return Rgb(light == view && light.x > 0.9F ? 1.0F : 0.0F);
+                                       });
+  for (const auto& btf : {realistic_btf(2, "regular:4x10"), mirror, two_pairs}) {
+    const Samples samples(btf->views(), btf->lights(), Quantity::radiance);
+    std::vector<float> abrdf(3 * samples.pairs);
+    for (int texel = 0; texel < btf->width() * btf->height(); ++texel) {
+      btf->abrdf(texel % btf->width(), texel / btf->width(), abrdf);
+      const std::vector<float> channels = channel_arrays(samples, abrdf, 1);
+      for (const bool em_angles : {false, true}) {
+        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+          Modes modes = modes_named("optimal", 3, true);
+          modes.em_angles = em_angles;
+          Kernels guess = initial_guess(samples, channels, {8, 3}, modes, seed);
+          double largest = 0;
+          for (std::size_t j = 0; j < 8; ++j) {
+            for (std::size_t k = 0; k < 3; ++k) {
+              const double* p = guess.centre(j, k);
+              const double lambda = std::hypot(p[0], p[1], p[2]);
+              REQUIRE(std::isfinite(lambda));
+              CHECK(lambda <= 4 + 1e-5);  // directions are floats
+              largest = std::max(largest, lambda);
+            }
+          }
+          CHECK(largest > 0);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("SRBF: a fit whose guess moves the angles ends well, and fixed angles are not moved") {
   const auto btf = realistic_btf(4, "regular:3x6");
   const auto fit_with = [&](std::vector<std::string> parameters) {
