@@ -185,9 +185,10 @@ TEST_CASE("SRBF fits from centres at antipodes of all that is bright") {
   }
 }
 
-TEST_CASE("SRBF fits data where light and view cancel in a mode, a_k = -b_k") {
-  // Lights and views are the same directions: the difference of many pairs has no length, and no
-  // a and b make a_k = b_k = 0 otherwise, since they are a cosine and a sine.
+TEST_CASE("SRBF fits data where light and view cancel in a mode, a_k = -b_k; a_k = b_k = 0") {
+  // The second cannot be written down: a and b are a cosine and a sine of one angle. What it would
+  // make, a psi of no length, comes of the first where light = view: lights and views are the same
+  // directions here, so that it does at every eighteenth pair.
   const auto directions = named_directions("regular:3x6");
   const auto back = [](const Direction& l, const Direction& v) {
     return 0.1F + std::exp(6 * ((l ^ v) - 1));  // brightest there
