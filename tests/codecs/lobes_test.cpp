@@ -198,6 +198,58 @@ TEST_CASE("Peaks are at most 1.2 times the largest sample, exponents within boun
   }
 }
 
+namespace {
+
+// Luminance of a facet that is tilted from the normal, with a highlight, dark towards grazing
+// lights, which its surroundings shadow.
+struct Facet {
+  double tilt;
+  double gloss;     // exponent of the highlight
+  double strength;  // of the highlight
+  double shadow;    // cosine of the light at which half is left; below 0 none
+};
+
+double luminance(const Facet& facet, const Direction& light) {
+  const Direction normal = from_spherical(radians(facet.tilt), radians(20.0));
+  const Direction view = from_spherical(radians(30.0), radians(200.0));
+  const double cosine = normal ^ light;
+  if (!(cosine > 0)) return 0;
+  const double half = std::max((light + view).normalized() ^ normal, 0.0F);
+  const double lit = facet.shadow < 0 ? 1 : 1 / (1 + std::exp(-8 * (light.z - facet.shadow)));
+  return (cosine + facet.strength * std::pow(half, facet.gloss)) * lit;
+}
+
+}  // namespace
+
+TEST_CASE("Two lobes fit the value with its cosine better than the value without, times it") {
+  // What is left of the value without its cosine grows without bound where a facet faces a grazing
+  // light.
+  const LightTable lights(HemisphereSampling(named_directions("ubo81")));
+  for (const Facet& facet : {Facet{30, 1, 0, 0.2}, Facet{50, 20, 0.5, -1}}) {
+    std::vector<double> value(lights.padded());
+    std::vector<double> without(lights.padded());
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      const auto l = lights.direction(i);
+      value[i] = luminance(facet, {(float)l[0], (float)l[1], (float)l[2]});
+      without[i] = value[i] / l[2];
+    }
+    const double largest_value = *std::ranges::max_element(value);
+    const double largest_without = *std::ranges::max_element(without);
+    for (double& v : value) v /= largest_value;
+    for (double& v : without) v /= largest_without;
+    const FieldFit direct = fit_field(lights, value, 2);
+    std::vector<double> detour(lights.padded());
+    evaluate(lights, fit_field(lights, without, 2).lobes, detour);
+    double error = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      const double found = detour[i] * lights.direction(i)[2] * largest_without / largest_value;
+      error += std::pow(found - value[i], 2);
+    }
+    INFO("tilt " << facet.tilt << ": " << std::sqrt(direct.error) << " and " << std::sqrt(error));
+    CHECK(std::sqrt(direct.error) < 0.6 * std::sqrt(error));
+  }
+}
+
 TEST_CASE("The high-pass finds the peaks of a field, the sharper first") {
   const LightTable lights(HemisphereSampling(named_directions("ubo81")));
   std::vector<double> values(lights.padded());
