@@ -54,7 +54,8 @@ Model empty_model(const Btf& btf, const std::string& codec, Kind kind, std::size
 
 /// Sets `scale` so that the largest of `fields`' colours (or polynomials of RGB) is 8,192, divides
 /// by it, and rounds all. The last step. Then halfs hold not only what is stored but also, for
-/// `lobes`, every intermediate value of a decoder: four lobes of at most 1.2, times a colour.
+/// `lobes`, every intermediate value of a decoder that takes |w| of w over its largest component:
+/// four lobes of at most 1.2, times a colour.
 /// @throws Error  bad_input that names the first view and texel of more than a float holds.
 void store_fields(Model& model);
 
