@@ -174,11 +174,10 @@ CodecBenches bench_variants(const std::vector<CodecVariant>& variants,
 
 CodecBenches bench_factors(const std::vector<CodecVariant>& variants, const Options& options,
                            Session& session) {
-  const fs::path file = tissue_or_named(options);
-  const fs::path data =
-      options.variant_data.empty()
-          ? traced(file, options.texels, options.variant_directions, options, session)
-          : fs::path(options.variant_data);
+  const fs::path data = options.variant_data.empty()
+                            ? traced(tissue_or_named(options), options.texels,
+                                     options.variant_directions, options, session)
+                            : fs::path(options.variant_data);
   const auto btf = read_data(data, session.measured["variant_dataset"]);
   say_head(fmt::format("\n{} x {} directions", btf->views().size(), btf->lights().size()), session);
   return bench_variants(variants, btf, session.measured["variants"], session);
@@ -208,6 +207,7 @@ void bench_codecs(const Options& options, Session& session) {
   }
   check_elevations(named_directions(options.directions), "direction");
   check_elevations(named_directions(options.variant_directions), "direction");
+  if (!options.mesostructure.empty()) read_mesostructure(options.mesostructure);
   const std::vector<CodecVariant> compared =
       options.comparisons ? of_chosen(compared_variants(), chosen) : std::vector<CodecVariant>();
   for (const std::string structure : compared_structures) {

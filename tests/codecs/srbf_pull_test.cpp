@@ -226,8 +226,8 @@ TEST_CASE("SRBF: a robust penalty smooths each material and leaves the edge betw
   const auto inside = [](int x) { return x != 3; };
   const auto across = [](int x) { return x == 3; };
   const Model none = fit_with("0", "true");
-  const Model robust = fit_with("1e-3", "true");
-  const Model square = fit_with("1e-3", "false");
+  const Model robust = fit_with("1e-2", "true");
+  const Model square = fit_with("1e-2", "false");
   CHECK(from_neighbours(robust, inside) < 0.85 * from_neighbours(none, inside));
   CHECK(from_neighbours(robust, across) > 0.8 * from_neighbours(none, across));
   CHECK(from_neighbours(square, across) < 0.5 * from_neighbours(none, across));

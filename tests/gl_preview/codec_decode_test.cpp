@@ -144,7 +144,7 @@ TEST_CASE("Odd sizes, few directions and floats decode alike too") {
   check_variants(procedural_btf(1, 1, "fibonacci:40", PixelType::half));
 }
 
-TEST_CASE("Indices of a codebook that is all but full decode alike too") {
+TEST_CASE("Indices beyond half a codebook decode alike too") {
   const auto context = gl_or_skip();
   if (!context) return;
   // 400 texels and their levels: twice as many maps as a byte can name.
@@ -155,6 +155,6 @@ TEST_CASE("Indices of a codebook that is all but full decode alike too") {
       "cmf bits=8 resolution=8, 20 x 20 texels",
       codec_named("cmf").fit(btf, Settings::from_text("", "--set", parameters), silent)};
   for (const std::size_t count : maps_in_use(variant.representation->gl_program()))
-    CHECK(count > 200);
+    CHECK(count > 150);
   check_decoding(variant, largest_value(*btf));
 }

@@ -185,7 +185,7 @@ TEST_CASE("SRBF fits from centres at antipodes of all that is bright") {
   }
 }
 
-TEST_CASE("SRBF fits data where light and view cancel in a mode, a_k = -b_k; a_k = b_k = 0") {
+TEST_CASE("SRBF fits data where light and view cancel in a mode, a_k = -b_k, and a_k = b_k = 0") {
   // The second cannot be written down: a and b are a cosine and a sine of one angle. What it would
   // make, a psi of no length, comes of the first where light = view: lights and views are the same
   // directions here, so that it does at every eighteenth pair.
