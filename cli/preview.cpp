@@ -11,8 +11,8 @@
 #include "btf/error.h"
 #include "cli/btf_option.h"
 #include "cli/command.h"
-#include "cli/dark_scene.h"
 #include "cli/lod_option.h"
+#include "cli/scene_light.h"
 #include "gl_preview/headless.h"
 #include "gl_preview/window.h"
 #include "images/image_file.h"
@@ -87,8 +87,8 @@ std::optional<float> lod_of(const PreviewArguments& arguments,
   return lod;
 }
 
-void tell_about_light(const Scene& scene, const Session& session) {
-  warn_where_dark(scene, session);
+void tell_about_light(const Scene& scene, Session& session) {
+  report_light(scene, session);
   if (scene.environments.empty()) return;
   session.say(
       fmt::format("Environment light is shown as {} directional lights, and not behind the scene.",

@@ -8,9 +8,9 @@
 #include "btf/error.h"
 #include "cli/btf_option.h"
 #include "cli/command.h"
-#include "cli/dark_scene.h"
 #include "cli/lod_option.h"
 #include "cli/option_checks.h"
+#include "cli/scene_light.h"
 #include "images/image_file.h"
 #include "tracer/render.h"
 #include "tracer/scene_file.h"
@@ -118,7 +118,7 @@ void run(Options& options, Session& session) {
   const Scene scene =
       read_scene(options.scene, open_datasets(), btf_paths(options.btfs), options.overrides);
   check_levels(options.settings.lod, has_levels(scene));
-  warn_where_dark(scene, session);
+  report_light(scene, session);
   Progress progress("render", session.quiet || session.json);
   const RenderResult result = render(scene, options.settings, progress);
   write_image(options.output, result.image, Encoding::colour);

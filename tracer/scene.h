@@ -2,6 +2,7 @@
 // opened.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,7 @@ struct EnvironmentLight {
   Image radiance;
   float rotate = 0;
   std::string name = "environment";  ///< as errors call it: its file
+  std::int64_t negative_values = 0;  ///< of the file's, which are 0 in `radiance`
 };
 
 struct SceneMaterial {

@@ -10,6 +10,7 @@
 #include "tracer/bsdf.h"
 #include "tracer/bsdf_appearance.h"
 #include "tracer/camera.h"
+#include "tracer/lights/environment_radiance.h"
 #include "tracer/shapes/shape_registry.h"
 
 namespace weft {
@@ -66,7 +67,8 @@ Image as_rgb(const Image& image) {
   return rgb;
 }
 
-/// A picture (`file`, times `scale`), or the same `radiance` from everywhere.
+/// A picture (`file`, times `scale`), or the same `radiance` from everywhere. Checked here, so that
+/// every renderer takes and refuses the same files.
 void read_environment_light(const Settings& settings, Scene& scene) {
   EnvironmentLight light;
   if (settings.has("file") == settings.has("radiance")) {
@@ -77,12 +79,14 @@ void read_environment_light(const Settings& settings, Scene& scene) {
     const std::filesystem::path file = settings.existing_path("file");
     light.name = file.string();
     light.radiance = as_rgb(read_image(file, Encoding::colour));
+    light.negative_values = clear_negative_values(light.radiance);
     const auto scale = static_cast<float>(settings.number("scale", 1, 0, 1e12));
     for (float& value : light.radiance.values) value *= scale;
   } else {
     light.radiance = Image(1, 1);
     light.radiance.set_rgb(0, 0, settings.rgb("radiance", {1, 1, 1}));
   }
+  check_radiance(light);
   light.rotate = static_cast<float>(radians(settings.number("rotate", 0)));
   scene.environments.push_back(std::move(light));
 }

@@ -1,6 +1,8 @@
 // weft render as a user calls it: pictures whose every pixel is known, and how it complains.
 
+#include <algorithm>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "images/image_file.h"
@@ -101,15 +103,59 @@ TEST_CASE("A level that nothing in the scene has is refused") {
   CHECK(draw({"render", "--spp", "1"}, "auto").exit_code == 0);
 }
 
-TEST_CASE("An environment with a negative pixel is named") {
+TEST_CASE("An environment's negative values are 0, counted and warned of, but not with --quiet") {
   const RenderFolder folder;
   weft::Image sky(2, 1);
-  sky.set_rgb(1, 0, {-1, 0, 0});
-  weft::write_image(folder.path / "sky.exr", sky, weft::Encoding::linear);
-  const Outcome outcome =
-      folder.render({"--set", "light=[{ type = 'environment', file = 'sky.exr' }]"});
-  CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Catch::Contains("sky.exr: pixel x = 1, y = 0"));
+  std::ranges::fill(sky.values, 1.0F);
+  const auto draw = [&](float odd, const std::string& how) {
+    sky.set_rgb(1, 0, {odd, odd, 1});
+    weft::write_image(folder.path / "sky.exr", sky, weft::Encoding::linear);
+    return folder.render(
+        {"--set", "light=[{ type = 'environment', file = 'sky.exr' }]", "--spp", "4", how});
+  };
+  const auto picture = [&] {
+    return weft::read_image(folder.path / "out.exr", weft::Encoding::linear).values;
+  };
+  const Outcome told = draw(-0.001F, "--json");
+  REQUIRE(told.exit_code == 0);
+  CHECK(nlohmann::json::parse(told.out)["environment_negative_values"] == 2);
+  CHECK_THAT(told.err, Catch::Contains("warning") && Catch::Contains("sky.exr: 2 of 6 values"));
+  const std::vector<float> clamped = picture();
+  CHECK(draw(-0.001F, "--quiet").err.empty());
+  const Outcome zero = draw(0, "--json");
+  CHECK(nlohmann::json::parse(zero.out)["environment_negative_values"] == 0);
+  CHECK(zero.err.empty());
+  CHECK(picture() == clamped);
+}
+
+TEST_CASE("render and preview read an environment alike, and refuse the same pixels") {
+  const RenderFolder folder;
+  weft::Image sky(2, 1);
+  const std::vector<std::vector<std::string>> commands = {{"render", "--spp", "1"},
+                                                          {"preview", "--headless"}};
+  const auto draw = [&](std::vector<std::string> arguments, float odd) {
+    sky.set_rgb(1, 0, {odd, 1, 1});
+    weft::write_image(folder.path / "sky.exr", sky, weft::Encoding::linear);
+    for (const char* more : {"scene.toml", "-o", "out.exr", "--set",
+                             "light=[{ type = 'environment', file = 'sky.exr' }]"}) {
+      arguments.emplace_back(more);
+    }
+    return run_weft(arguments, folder.path);
+  };
+  for (const std::vector<std::string>& command : commands) {
+    INFO(command[0]);
+    for (const float odd :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+      const Outcome refused = draw(command, odd);
+      CHECK(refused.exit_code == 2);
+      CHECK_THAT(refused.err, Catch::Contains("sky.exr: pixel x = 1, y = 0"));
+      CHECK_FALSE(std::filesystem::exists(folder.path / "out.exr"));
+    }
+  }
+  // Before anything is drawn, so that this holds without EGL too.
+  for (const std::vector<std::string>& command : commands) {
+    CHECK_THAT(draw(command, -1).err, Catch::Contains("sky.exr: 1 of 6 values were negative"));
+  }
 }
 
 TEST_CASE("A scene without light is warned of, but not with --quiet") {

@@ -99,7 +99,8 @@ TEST_CASE("The density integrates to one and the samples follow it", "[environme
   CHECK(statistics::chi2_test(observed, expected) < 1e-6);
 }
 
-TEST_CASE("A black environment has no samples, a negative one is refused", "[environment]") {
+TEST_CASE("A black environment has no samples, a negative one of a program's is refused",
+          "[environment]") {
   EnvironmentLight light;
   light.radiance = Image(4, 2);
   CHECK(EnvironmentSampler(light).sample(0.3F, 0.4F).pdf == 0);

@@ -1,13 +1,11 @@
 #include "tracer/lights/environment_sampler.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
 
-#include "btf/error.h"
+#include "tracer/lights/environment_radiance.h"
 
 namespace weft {
 namespace {
@@ -33,22 +31,14 @@ Choice choose(std::span<const double> edges, double u) {
 }  // namespace
 
 EnvironmentSampler::EnvironmentSampler(const EnvironmentLight& light) : light_(light) {
+  check_radiance(light);  // a scene that a program made was read by nobody
   const Image& image = light.radiance;
   row_edges_.push_back(0);
   for (int y = 0; y < image.height; ++y) {
     double sum = 0;
     pixel_edges_.push_back(0);
     for (int x = 0; x < image.width; ++x) {
-      const Rgb c = image.rgb(x, y);
-      const double weight = mean(c);
-      if (!std::isfinite(weight) || std::min({c.x, c.y, c.z}) < 0) {
-        throw bad_input(
-            light.name,
-            fmt::format("pixel x = {}, y = {} is ({}, {}, {}), expected finite radiance "
-                        "of at least 0",
-                        x, y, c.x, c.y, c.z));
-      }
-      sum += weight;
+      sum += mean(image.rgb(x, y));
       pixel_edges_.push_back(sum);
     }
     row_edges_.push_back(row_edges_.back() + sum * solid_angle(y));
