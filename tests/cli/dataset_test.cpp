@@ -96,6 +96,32 @@ TEST_CASE("extract writes the values of one view and one light, +y up") {
   CHECK(fs::exists(dataset.folder.path / "b.png"));
 }
 
+TEST_CASE("extract writes a compressed dataset's answers, as near to the raw ones as the fit is") {
+  const Dataset dataset;
+  REQUIRE(dataset.run({"compress", "small.btf", "--codec", "cmf", "-o", "small.cmf"}).exit_code ==
+          0);
+  const auto picture = [&](const std::string& input) {
+    const auto told =
+        dataset.json({"extract", input, "--view", "20,100", "--light", "40,15", "-o", "a.exr"});
+    CHECK(told["size"] == nlohmann::json::array({4, 2}));
+    CHECK(told["codec"] == (input == "small.btf" ? "raw" : "cmf"));
+    weft::Image image = weft::read_image(dataset.folder.path / "a.exr", weft::Encoding::linear);
+    REQUIRE(image.values.size() == 4 * 2 * 3);
+    double sum = 0;
+    for (const float value : image.values) sum += value;
+    CHECK(told["mean"][0].get<double>() == Approx(sum / 24).epsilon(1e-5));  // it is grey
+    return image;
+  };
+  const weft::Image raw = picture("small.btf");
+  const weft::Image fitted = picture("small.cmf");
+  // The data are one product of a texel's albedo and a light's cosine, which a chain of factors
+  // holds: what is left is the rounding to 8 bits.
+  for (std::size_t i = 0; i < raw.values.size(); ++i) {
+    INFO("value " << i);
+    CHECK(fitted.values[i] == Approx(raw.values[i]).epsilon(0.015));
+  }
+}
+
 TEST_CASE("extract rounds a level's size down, as the levels themselves do") {
   const TemporaryFolder folder;
   const weft::HemisphereSampling up({{0, 0, 1}});

@@ -111,6 +111,23 @@ TEST_CASE("PLY: ASCII and binary of both byte orders hold the same mesh") {
   }
 }
 
+TEST_CASE("PLY: normals and texcoords of the vertices are kept, and normals made unit") {
+  const TriangleMesh mesh =
+      read("dressed.ply",
+           "ply\nformat ascii 1.0\nelement vertex 4\n"
+           "property float x\nproperty float y\nproperty float z\n"
+           "property float nx\nproperty float ny\nproperty float nz\n"
+           "property float s\nproperty float t\n"
+           "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0 0 0 2 0 0\n1 0 0 0.6 0 0.8 1 0\n1 1 0 0 0.6 0.8 1 0.5\n0 1 0 0 0 1 0 0.5\n"
+           "4 0 1 2 3\n");
+  CHECK(mesh.positions == std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  CHECK(mesh.texcoords == std::vector<Vec2>{{0, 0}, {1, 0}, {1, 0.5F}, {0, 0.5F}});
+  const std::vector<Vec3> normals = {{0, 0, 1}, {0.6F, 0, 0.8F}, {0, 0.6F, 0.8F}, {0, 0, 1}};
+  REQUIRE(mesh.normals.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK((mesh.normals[i] - normals[i]).length() < 1e-6F);
+}
+
 TEST_CASE("bad meshes are refused with file and line") {
   CHECK_THAT(refusal("empty.obj", ""), Contains("mesh has no faces"));
   CHECK_THAT(refusal("points.obj", square), Contains("mesh has no faces"));
