@@ -55,19 +55,30 @@ TEST_CASE(
     "a flat Lambert tile is rho / pi cos(theta) in every pair, between and beyond the samples") {
   AcquisitionSettings settings;
   settings.trace = {.width = 2, .height = 2, .spp = 2, .max_bounces = 3, .seed = 1};
-  const auto btf = std::make_shared<const Btf>(acquire(test::flat({0.8F, 0.45F, 0.1F}), settings));
+  const Rgb albedo(0.8F, 0.45F, 0.1F);
+  const auto btf = std::make_shared<const Btf>(acquire(test::flat(albedo), settings));
   for (std::size_t v = 0; v < 81; ++v) {
     for (std::size_t l = 0; l < 81; ++l) {
-      const double expected = 0.8 / pi * btf->lights()[l].z;
-      REQUIRE(btf->at(l, v, 1, 0).x == Approx(expected).epsilon(0.002));
+      INFO("view " << v << ", light " << l);
+      for (int i = 0; i < 4; ++i) {
+        const Rgb found = btf->at(l, v, i % 2, i / 2);
+        for (int c = 0; c < 3; ++c) {
+          REQUIRE(found[c] == Approx(albedo[c] / pi * btf->lights()[l].z).epsilon(0.002));
+        }
+      }
     }
   }
   const RawAppearance appearance(btf);
   for (int theta = 0; theta <= 89; ++theta) {
     const Direction light = from_spherical(radians(theta * 1.0), 0.1 * theta);
     const Direction view = from_spherical(radians(89.0 - theta), 2.3 * theta);
-    REQUIRE(appearance.evaluate({0.3F, 0.6F}, light, view, 0).y ==
-            Approx(0.45 / pi * light.z).epsilon(0.002));
+    for (const Texcoord& uv : {Texcoord(0.3F, 0.6F), Texcoord(0.9F, 0.1F), Texcoord(0, 0)}) {
+      const Rgb found = appearance.evaluate(uv, light, view, 0);
+      for (int c = 0; c < 3; ++c) {
+        INFO("theta " << theta << ", uv " << uv << ", channel " << c);
+        REQUIRE(found[c] == Approx(albedo[c] / pi * light.z).epsilon(0.002));
+      }
+    }
   }
 }
 
