@@ -23,13 +23,6 @@ constexpr float step_back = 1e-5F;
 // A ray still travelling after this many tiles runs level between the structure's heights for good.
 constexpr int max_moves = 1'000'000;
 
-bool has_area(const TriangleMesh& mesh) {
-  return std::ranges::any_of(mesh.triangles, [&](const auto& t) {
-    const Vec3& a = mesh.positions[t[0]];
-    return ((mesh.positions[t[1]] - a) % (mesh.positions[t[2]] - a)).length2() > 0;
-  });
-}
-
 Bounds bounds_of(const TriangleMesh& mesh, const CurveSet& curves) {
   if (mesh.triangles.empty() && curves.segments.empty())
     throw bad_input("mesostructure", "has no triangles");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "btf/atomic_file.h"
@@ -28,11 +29,25 @@ std::string pixel_type_name(PixelType type) {
   return type == PixelType::half ? "half" : "float";
 }
 
+/// "LINE:COLUMN" of a byte of the text, counted from 1; one more than it has is its end.
+std::string place_of_byte(const std::string& text, std::size_t byte) {
+  const std::string_view before = std::string_view(text).substr(0, byte > 0 ? byte - 1 : 0);
+  const auto line = 1 + std::ranges::count(before, '\n');
+  const std::size_t column = before.size() - (before.rfind('\n') + 1) + 1;
+  return fmt::format("{}:{}", line, column);
+}
+
 Json parse(const fs::path& path) {
+  const std::string text = read_text(path);
   try {
-    return Json::parse(read_text(path));
-  } catch (const Json::exception& error) {
-    throw bad_input(path.string(), std::string("is not JSON: ") + error.what());
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw bad_input(fmt::format("{}:{}", path.string(), place_of_byte(text, error.byte)),
+                    error.byte > text.size() ? "is not JSON: the file ends here, in the middle"
+                                             : "is not JSON from here on",
+                    "the file is truncated or was changed; copy or trace the dataset again");
+  } catch (const Json::out_of_range&) {
+    throw bad_input(path.string(), "holds a number that is too large");
   }
 }
 

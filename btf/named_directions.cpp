@@ -7,6 +7,7 @@
 #include <fstream>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "btf/error.h"
 #include "btf/hemisphere_sampling.h"
@@ -14,6 +15,8 @@
 namespace weft {
 
 namespace {
+
+constexpr int most_directions = 16000;
 
 struct Ring {
   double theta;  // degrees
@@ -80,16 +83,19 @@ std::vector<Direction> from_csv(const std::string& name) {
     }
     directions.push_back(from_spherical(radians(theta), radians(phi)));
   }
+  if (directions.empty() || std::cmp_greater(directions.size(), most_directions)) {
+    throw bad_input(name, fmt::format("holds {} directions; expected 1 to {}, a line each",
+                                      directions.size(), most_directions));
+  }
   return directions;
 }
 
-// A whole number in [1, 16000] that fills the text, or 0.
+// A whole number in [1, most_directions] that fills the text, or 0.
 int count_of(std::string_view text) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value > 0 && value <= 16000
-             ? value
-             : 0;
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && value > 0 && value <= most_directions ? value : 0;
 }
 
 }  // namespace
@@ -120,12 +126,14 @@ std::vector<Direction> named_directions(const std::string& name) {
     if (x != std::string_view::npos) {
       const int thetas = count_of(sizes.substr(0, x));
       const int phis = count_of(sizes.substr(x + 1));
-      if (thetas > 0 && phis > 0 && thetas * phis <= 16000) return regular(thetas, phis);
+      if (thetas > 0 && phis > 0 && thetas * phis <= most_directions) return regular(thetas, phis);
     }
   }
   throw bad_input(
       "directions", "unknown set \"" + name + "\"",
-      "ubo81, ubo151, regular:THETAxPHI, fibonacci:N or file:NAME.csv, at most 16000 directions");
+      fmt::format("ubo81, ubo151, regular:THETAxPHI, fibonacci:N or file:NAME.csv, at most {} "
+                  "directions",
+                  most_directions));
 }
 
 }  // namespace weft

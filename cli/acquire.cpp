@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "btf/error.h"
 #include "cli/command.h"
 #include "cli/memory_option.h"
+#include "cli/option_checks.h"
 #include "cli/run_record.h"
 
 namespace weft::cli {
@@ -69,8 +71,6 @@ AcquisitionSettings settings_of(const Options& options, const Session& session) 
       x == std::string::npos
           ? settings.trace.width
           : whole_number("--texels", options.texels.substr(x + 1), 1, most_texels);
-  if (options.spp < 1)
-    throw bad_input("--spp", fmt::format("is {}; expected at least 1", options.spp));
   settings.trace.spp = options.spp;
   settings.trace.max_bounces = bounces(options.max_bounces);
   settings.trace.seed = session.seed;
@@ -81,8 +81,6 @@ AcquisitionSettings settings_of(const Options& options, const Session& session) 
     throw bad_input("--error", fmt::format("is {}; expected a number above 0", options.error));
   if (options.alpha && !std::isfinite(*options.alpha))
     throw bad_input("--alpha", fmt::format("is {}; expected a height in tiles", *options.alpha));
-  if (options.validate < 0)
-    throw bad_input("--validate", fmt::format("is {}; expected at least 0", options.validate));
   settings.trace.error = options.error;
   settings.trace.indirect_cache = options.indirect == "cache";
   settings.trace.texel_errors = options.variance;
@@ -227,6 +225,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_acquire(CLI::App& app, Session& session) {
+  constexpr int most = std::numeric_limits<int>::max();
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "acquire",
@@ -245,7 +244,8 @@ void add_acquire(CLI::App& app, Session& session) {
   command->add_option("--views", options->views, "Views alone, the same names");
   command->add_option("--lights", options->lights, "Lights alone, the same names");
   command->add_option("--spp", options->spp, "Eye paths a view and texel; each serves every light")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(whole_number(most, 1));
   command
       ->add_option("--max-bounces", options->max_bounces,
                    "Reflections after the first, to 4096: 0 is direct light; or unlimited")
@@ -271,10 +271,12 @@ void add_acquire(CLI::App& app, Session& session) {
   command->add_option("--alpha", options->alpha,
                       "Also write coverage, part alpha: the share of a texel's rays that hit at or "
                       "above this height (tiles)");
-  CLI::Option* validate = command->add_option(
-      "--validate", options->validate,
-      "Also trace N random pairs between the directions into OUT/offgrid/; of a "
-      "dataset that is finished already, these alone");
+  CLI::Option* validate =
+      command
+          ->add_option("--validate", options->validate,
+                       "Also trace N random pairs between the directions into OUT/offgrid/; of a "
+                       "dataset that is finished already, these alone")
+          ->check(whole_number(most));
   add_memory_option(
       *command, options->memory,
       "Most memory, e.g. 4GiB: fewer views are traced at once; 0: as many as threads");

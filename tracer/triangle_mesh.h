@@ -2,6 +2,7 @@
 // made of.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -21,5 +22,13 @@ struct TriangleMesh {
   std::vector<std::uint16_t> materials;  ///< one a triangle, index into `material_names`
   std::vector<std::string> material_names;
 };
+
+/// Whether any triangle is more than a line or a point.
+inline bool has_area(const TriangleMesh& mesh) {
+  return std::ranges::any_of(mesh.triangles, [&](const auto& t) {
+    const Vec3& a = mesh.positions[t[0]];
+    return ((mesh.positions[t[1]] - a) % (mesh.positions[t[2]] - a)).length2() > 0;
+  });
+}
 
 }  // namespace weft

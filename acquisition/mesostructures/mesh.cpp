@@ -1,6 +1,8 @@
 // A mesh that the user brings, scaled and placed into the tile.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "acquisition/mesostructures/periodic.h"
 #include "acquisition/mesostructures/types.h"
 #include "btf/error.h"
@@ -53,6 +55,14 @@ void require_tile_sized(const PolygonMesh& mesh, const std::string& file) {
       "x and y from 0 to 1 cover the tile; `fit = true` or `scale` makes it so");
 }
 
+/// The faces as they are, without subdivision.
+TriangleMesh flat_faces(PolygonMesh polygons) {
+  polygons.texcoords.clear();
+  TriangleMesh mesh = triangulate(polygons);
+  if (mesh.normals.empty()) set_periodic_normals(mesh);
+  return mesh;
+}
+
 TriangleMesh build(const Settings& settings) {
   const std::filesystem::path file = settings.existing_path("file");
   const bool y_up = settings.choice("up", {"z", "y"}) == "y";
@@ -67,10 +77,9 @@ TriangleMesh build(const Settings& settings) {
   for (Vec3& p : polygons.positions) p = p * scale + translate;
   require_tile_sized(polygons, file.string());
 
-  if (levels > 0) return triangulate(periodic_limit_surface(polygons, levels));
-  polygons.texcoords.clear();
-  TriangleMesh mesh = triangulate(polygons);
-  if (mesh.normals.empty()) set_periodic_normals(mesh);
+  TriangleMesh mesh = levels > 0 ? triangulate(periodic_limit_surface(polygons, levels))
+                                 : flat_faces(std::move(polygons));
+  if (!has_area(mesh)) throw bad_input(file.string(), "the mesh has no triangle with an area");
   return mesh;
 }
 

@@ -35,6 +35,13 @@ struct Mistakes {
     write(f / "faceless.toml", "type = \"mesh\"\nfile = \"faceless.obj\"\n");
     write(f / "fileless.toml", "type = \"mesh\"\nfile = \"nothing.obj\"\n");
     write(f / "faceless.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\n");
+    write(f / "thin.toml", "type = \"mesh\"\nfile = \"thin.obj\"\n");
+    write(f / "thin.obj", "v 0 0 0\nv 0.5 0 0\nv 1 0 0\nf 1 2 3\n");
+    write(f / "empty.csv", "theta,phi\n");
+    fs::create_directory(f / "torn.btf");
+    write(f / "torn.btf" / "btf.json", "{\n \"format\": \"weft-btf\",\n \"version\": ");
+    fs::create_directory(f / "odd.btf");
+    write(f / "odd.btf" / "btf.json", "{\n \"format\" 1}");
     write(f / "scene.toml",
           "camera = { type = \"perspective\", eye = [0, -4, 2], target = [0, 0, 0], up = [0, 0, "
           "1], fov = 40, "
@@ -92,6 +99,7 @@ TEST_CASE("acquire refuses bad mesostructures") {
   mistakes.refused(acquire("nan.toml"), {"nan.exr", "nan"});
   mistakes.refused(acquire("truncated.toml"), {"truncated.exr"});
   mistakes.refused(acquire("faceless.toml"), {"faceless.obj", "face"});
+  mistakes.refused(acquire("thin.toml"), {"thin.obj", "no triangle with an area"});
   mistakes.refused(acquire("fileless.toml"), {"fileless.toml:2:1", "nothing.obj"});
   mistakes.refused(acquire("imageless.toml"), {"imageless.toml:2:1", "none.png"});
   mistakes.refused(acquire("good.toml", {"--set", "reference_height=-0.5"}),
@@ -103,6 +111,10 @@ TEST_CASE("acquire refuses bad mesostructures") {
 TEST_CASE("acquire refuses bad options") {
   const Mistakes mistakes;
   mistakes.refused(acquire("good.toml", {"--spp", "0"}), {"spp", "0"});
+  mistakes.refused(acquire("good.toml", {"--spp", "1e9"}),
+                   {"--spp", "'1e9'", "a whole number from 1 to"});
+  mistakes.refused(acquire("good.toml", {"--views", "file:empty.csv"}),
+                   {"empty.csv", "0 directions", "1 to 16000"});
   mistakes.refused(acquire("good.toml", {"--max-bounces", "many"}), {"--max-bounces", "many"});
   mistakes.refused(acquire("good.toml", {"--max-bounces", "inf"}),
                    {"--max-bounces", "inf", "unlimited"});
@@ -137,7 +149,7 @@ TEST_CASE("acquire refuses errors, heights, pairs and memory that cannot be") {
   refused({"--alpha", "nan"}, {"--alpha", "nan", "height"});
   refused({"--alpha", "high"}, {"--alpha", "high"});
   refused({"--validate", "-1"}, {"--validate", "-1"});
-  refused({"--validate", "some"}, {"--validate", "some"});
+  refused({"--validate", "some"}, {"--validate", "'some'", "a whole number from 0 to"});
   refused({"--validate", "2", "--shard", "0/2"}, {"--validate", "--shard"});
   refused({"--validate", "2", "--finish"}, {"--validate", "--finish"});
   refused({"--memory", "-1"}, {"--memory", "-1"});
@@ -166,6 +178,9 @@ TEST_CASE("compress, info and extract refuse what is not a dataset") {
   const Mistakes mistakes;
   mistakes.refused({"info", "nothing.btf"}, {"nothing.btf"});
   mistakes.refused({"info", "good.toml"}, {"good.toml"});
+  mistakes.refused({"info", "torn.btf"}, {"torn.btf/btf.json:3:13: is not JSON", "ends here"});
+  mistakes.refused({"compress", "odd.btf", "-o", "out.cmf"},
+                   {"odd.btf/btf.json:2:11: is not JSON"});
   mistakes.refused({"extract", "cut.btf", "--view", "0,0", "--light", "0,0", "-o", "a.exr"},
                    {"view_002.exr"});
   mistakes.refused({"compress", "nothing.btf", "-o", "out.cmf"}, {"nothing.btf"});
