@@ -40,7 +40,7 @@ TEST_CASE("SRBF numbers that the GPU filters decode nearly as those that the pro
           squares += std::pow(wanted[i][c], 2);
         }
       }
-      CHECK(std::sqrt(errors / squares) < (bits == "8" ? 0.04 : 0.01));  // blends have 8 bits, too
+      CHECK(std::sqrt(errors / squares) < (bits == "8" ? 0.06 : 0.01));  // blends have 8 bits, too
     }
   }
 }
