@@ -187,10 +187,12 @@ TEST_CASE("Halfs never overflow: fitted codecs are as near to bright data as to 
     };
     const double usual = error(1);
     // L-BFGS stops elsewhere after a few steps where the last bits differ.
-    const double tolerance = way.codec == "srbf" ? 3 : 0.02;
+    const double factor = way.codec == "srbf" ? 4 : 1.02;
     for (const float largest : {1e-9F, 65504.F, 1.3e8F, 1e18F}) {
       INFO(way.codec << " " << largest);
-      CHECK(error(largest) == Approx(usual).epsilon(tolerance).margin(tolerance * 1e-3));
+      const double found = error(largest);
+      CHECK(found < factor * usual + (factor - 1) * 1e-3);
+      CHECK(usual < factor * found + (factor - 1) * 1e-3);
     }
   }
 }
