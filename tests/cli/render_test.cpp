@@ -7,24 +7,14 @@
 
 #include "images/image_file.h"
 #include "tests/cli/program.h"
-#include "tests/cli/small_dataset.h"
+#include "tests/cli/small_scene.h"
 #include "tests/temporary_folder.h"
 
 namespace {
 
 /// A folder with a scene (a plane seen from above in light from above) and its BTF.
 struct RenderFolder : TemporaryFolder {
-  RenderFolder() {
-    write_small_dataset(path / "small.btf");
-    std::ofstream(path / "scene.toml") << R"(
-camera = { eye = [0, 0, 4], up = [0, 1, 0], fov = 20, size = [8, 4] }
-shape = [ { type = "plane", material = "cloth", size = [4, 4] } ]
-light = [ { type = "directional", direction = [0, 0, 1], irradiance = 2 } ]
-[material.cloth]
-type = "btf"
-file = "small.btf"
-)";
-  }
+  RenderFolder() { write_small_scene(path); }
   Outcome render(std::vector<std::string> more) const {
     std::vector<std::string> arguments = {"render", "scene.toml", "-o", "out.exr"};
     arguments.insert(arguments.end(), more.begin(), more.end());
