@@ -25,10 +25,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string reason(int code) {
-  return std::generic_category().message(code);
-}
-
 // Where a process's number means this process: host and PID namespace, since machines and
 // containers may share a folder.
 std::string machine() {
@@ -66,11 +62,11 @@ bool link_or_rename(const fs::path& temporary, const fs::path& path) {
 
 void sync(const fs::path& path, const fs::path& final_path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) throw failed(final_path.string(), "cannot be written: " + reason(errno));
+  if (file < 0) throw failed(final_path.string(), "cannot be written: " + system_reason(errno));
   const int result = fsync(file);
   const int code = errno;
   close(file);
-  if (result != 0) throw failed(final_path.string(), "cannot be synced: " + reason(code));
+  if (result != 0) throw failed(final_path.string(), "cannot be synced: " + system_reason(code));
 }
 
 }  // namespace
@@ -84,7 +80,7 @@ void sync_folder(const fs::path& folder) {
   close(file);
   // Some network file systems cannot sync a folder, and say EINVAL.
   if (result != 0 && code != EINVAL) {
-    throw failed(name.string(), "cannot be synced: " + reason(code));
+    throw failed(name.string(), "cannot be synced: " + system_reason(code));
   }
 }
 
@@ -115,7 +111,7 @@ std::function<void(const fs::path&)> text_writer(const fs::path& path, std::stri
     std::ofstream out(temporary, std::ios::binary);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     out.close();
-    if (!out) throw failed(path.string(), "cannot be written: " + reason(errno));
+    if (!out) throw failed(path.string(), "cannot be written: " + system_reason(errno));
   };
 }
 
@@ -166,7 +162,7 @@ std::ifstream opened(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in || fs::is_directory(path)) {
     throw bad_input(path.string(),
-                    "cannot be read: " + (errno != 0 ? reason(errno) : "not a file"));
+                    "cannot be read: " + (errno != 0 ? system_reason(errno) : "not a file"));
   }
   return in;
 }

@@ -2,6 +2,7 @@
 
 #include "btf/error.h"
 
+#include <system_error>
 #include <utility>
 
 namespace weft {
@@ -25,6 +26,10 @@ Error bad_input(std::string where, std::string what, std::string hint) {
 
 Error failed(std::string where, std::string what, std::string hint) {
   return {Error::Kind::failed, std::move(where), std::move(what), std::move(hint)};
+}
+
+std::string system_reason(int error_number) {
+  return std::generic_category().message(error_number);
 }
 
 }  // namespace weft

@@ -29,5 +29,7 @@ class Error : public std::runtime_error {
 Error bad_input(std::string where, std::string what, std::string hint = {});
 /// Something outside failed: a disk, a display.
 Error failed(std::string where, std::string what, std::string hint = {});
+/// What the system calls a value of errno, e.g. "No space left on device".
+std::string system_reason(int error_number);
 
 }  // namespace weft

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <new>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "btf/error.h"
@@ -25,12 +24,8 @@ namespace {
 
 constexpr std::size_t alignment = 64;
 
-std::string reason(int code) {
-  return std::generic_category().message(code);
-}
-
 Error no_scratch(const fs::path& folder, int code) {
-  return failed(folder.string(), "cannot hold a scratch file: " + reason(code),
+  return failed(folder.string(), "cannot hold a scratch file: " + system_reason(code),
                 "name another folder in TMPDIR, or allow more memory");
 }
 
@@ -50,7 +45,7 @@ class ScratchFile {
       close(file_);
       throw failed(folder.string(),
                    fmt::format("has no room for {:.0f} MiB of scratch: {}",
-                               static_cast<double>(size) / (1 << 20), reason(code)),
+                               static_cast<double>(size) / (1 << 20), system_reason(code)),
                    "name another folder in TMPDIR, or allow more memory");
     }
   }

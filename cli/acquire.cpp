@@ -24,7 +24,7 @@ namespace weft::cli {
 
 namespace {
 
-struct Options {
+struct AcquireOptions {
   std::string mesostructure;
   std::string output;
   std::string texels = "64";
@@ -62,7 +62,7 @@ int bounces(const std::string& text) {
   return whole_number("--max-bounces", text, 0, 4096, ", or unlimited");
 }
 
-AcquisitionSettings settings_of(const Options& options, const Session& session) {
+AcquisitionSettings settings_of(const AcquireOptions& options, const Session& session) {
   constexpr int most_texels = 16384;
   AcquisitionSettings settings;
   const std::size_t x = options.texels.find('x');
@@ -103,7 +103,7 @@ Shard shard_of(const std::string& text) {
   return {static_cast<std::size_t>(index), static_cast<std::size_t>(count)};
 }
 
-void report(const AcquisitionReport& result, const Options& options, Session& session) {
+void report(const AcquisitionReport& result, const AcquireOptions& options, Session& session) {
   const TraceStatistics& s = result.statistics;
   const auto lights = static_cast<double>(result.lights);
   const double rays_per_second =
@@ -193,7 +193,7 @@ void finish(const Mesostructure& mesostructure, const AcquisitionSettings& setti
   session.exit_code = failure;
 }
 
-void run(const Options& options, Session& session) {
+void run(const AcquireOptions& options, Session& session) {
   if (options.output.empty())
     throw bad_input("--output", "is empty; expected the folder of a dataset, NAME.btf");
   const AcquisitionSettings settings = settings_of(options, session);
@@ -226,7 +226,7 @@ void run(const Options& options, Session& session) {
 
 void add_acquire(CLI::App& app, Session& session) {
   constexpr int most = std::numeric_limits<int>::max();
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AcquireOptions>();
   CLI::App* command = app.add_subcommand(
       "acquire",
       "Trace a mesostructure into a raw BTF. An interrupted run continues where it stopped.");

@@ -45,7 +45,7 @@ std::vector<std::string> names_of_structures() {
   return names;
 }
 
-struct Options {
+struct BenchAcquireOptions {
   std::string structures = fmt::format("{}", fmt::join(names_of_structures(), ","));
   std::string scenes;
   int texels = 64;
@@ -116,7 +116,7 @@ std::vector<std::pair<std::string, Mesostructure>> read_structures(const std::st
   return result;
 }
 
-void bench_acquire(const Options& options, Session& session) {
+void bench_acquire(const BenchAcquireOptions& options, Session& session) {
   const fs::path folder = scene_folder(options.scenes) / "mesostructures";
   AcquisitionSettings settings;
   settings.trace.width = settings.trace.height = options.texels;
@@ -163,7 +163,7 @@ void bench_acquire(const Options& options, Session& session) {
 }  // namespace
 
 void add_bench_acquire(CLI::App& bench, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchAcquireOptions>();
   CLI::App* acquire = bench.add_subcommand("acquire",
                                            "Trace and write whole datasets (8 bounces), and hold "
                                            "the time against what Embree alone needs "

@@ -24,7 +24,7 @@ namespace weft::cli {
 
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::string reference;
   std::string test;
   std::string map;
@@ -60,7 +60,7 @@ void report(const ImageDifference& d, const char* channel, Session& session) {
                           d.largest_y, channel));
 }
 
-void write_map(const Options& options, const Image& reference, const Image& test,
+void write_map(const CompareOptions& options, const Image& reference, const Image& test,
                Session& session) {
   const Image errors = error_per_pixel(reference, test, options.reference, options.test);
   const double top = options.map_top > 0 ? options.map_top : scale_top(errors);
@@ -69,7 +69,7 @@ void write_map(const Options& options, const Image& reference, const Image& test
   session.measured["map_top"] = top;
 }
 
-void hold_to_limit(double rmse, const Options& options, Session& session) {
+void hold_to_limit(double rmse, const CompareOptions& options, Session& session) {
   if (!(rmse > options.max_rmse)) return;
   session.exit_code = ExitCode::difference;
   if (!session.quiet) {
@@ -77,7 +77,7 @@ void hold_to_limit(double rmse, const Options& options, Session& session) {
   }
 }
 
-void compare_pictures(const Options& options, Session& session) {
+void compare_pictures(const CompareOptions& options, Session& session) {
   if (!options.map.empty()) check_image_path(options.map);
   const Image reference = read_image(options.reference, Encoding::colour);
   const Image test = read_image(options.test, Encoding::colour);
@@ -108,7 +108,7 @@ void report(const PairErrors& errors, Session& session) {
   }
 }
 
-void compare_datasets(const Options& options, Session& session) {
+void compare_datasets(const CompareOptions& options, Session& session) {
   if (!options.map.empty()) {
     throw bad_input("--map",
                     "draws the error of a picture, but " + options.reference + " is a dataset",
@@ -128,7 +128,7 @@ void compare_datasets(const Options& options, Session& session) {
   hold_to_limit(error.rmse, options, session);
 }
 
-void compare(const Options& options, Session& session) {
+void compare(const CompareOptions& options, Session& session) {
   const bool dataset = std::filesystem::is_directory(options.reference);
   (dataset ? compare_datasets : compare_pictures)(options, session);
 }
@@ -144,7 +144,7 @@ void add_compare(CLI::App& app, Session& session) {
       "was made from, at its samples: RMSE, and of Y, Cb and Cr (linear, BT.601's weights) mean "
       "square error and mean absolute difference of each pair of light and view, 1/sr: average, "
       "least and greatest. Exit code 3 where --max-rmse is exceeded");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   command->add_option("reference", options->reference, "Picture or raw BTF that is taken as true")
       ->option_text("REF")
       ->required();

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Options {
+struct CompressOptions {
   std::string input;
   std::string output;
   std::string codec = "cmf";
@@ -65,7 +65,7 @@ std::uintmax_t size_on_disk(const fs::path& folder) {
 }
 
 // A dataset that is read here would vanish under its reader.
-void refuse_same_folder(const Options& options) {
+void refuse_same_folder(const CompressOptions& options) {
   std::error_code ignored;
   if (fs::equivalent(options.input, options.output, ignored)) {
     throw bad_input("--output", fmt::format("'{}' is the input itself", options.output));
@@ -84,13 +84,13 @@ fs::path checkpoint_folder(const std::string& output) {
 }
 
 // Where people put what is large and short-lived; else where there is to be room for the result.
-fs::path scratch_folder(const Options& options) {
+fs::path scratch_folder(const CompressOptions& options) {
   const char* named = std::getenv("TMPDIR");
   if (named != nullptr && *named != 0) return named;
   return fs::absolute(output_folder(options.output)).parent_path();
 }
 
-std::shared_ptr<const Btf> read_input(const Options& options, const Codec& codec,
+std::shared_ptr<const Btf> read_input(const CompressOptions& options, const Codec& codec,
                                       const Session& session) {
   std::shared_ptr<MemoryBudget> memory;
   if (options.memory > 0) {
@@ -106,7 +106,7 @@ std::shared_ptr<const Btf> read_input(const Options& options, const Codec& codec
   return btf;
 }
 
-void compress(const Options& options, Session& session, bool seed_given) {
+void compress(const CompressOptions& options, Session& session, bool seed_given) {
   const Codec& codec = codec_named(options.codec);
   refuse_same_folder(options);
   // Before minutes of fitting. A raw dataset has another folder, whose writer looks itself.
@@ -155,7 +155,7 @@ void compress(const Options& options, Session& session, bool seed_given) {
 }  // namespace
 
 void add_compress(CLI::App& app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompressOptions>();
   CLI::App* command = app.add_subcommand("compress", "Fit a codec to a raw BTF");
   command->add_option("input", options->input, "Folder of the raw BTF (NAME.btf)")->required();
   command->add_option("--codec", options->codec, "One of " + codec_names())->capture_default_str();

@@ -22,7 +22,7 @@ namespace weft::cli {
 
 namespace {
 
-struct Options {
+struct ExtractOptions {
   std::filesystem::path input;
   std::filesystem::path output;
   std::vector<double> view;
@@ -91,7 +91,7 @@ Rgb mean_of(const Image& image) {
   return Rgb(sum / (static_cast<double>(image.width) * image.height));
 }
 
-void extract(const Options& options, Session& session) {
+void extract(const ExtractOptions& options, Session& session) {
   const Direction view = parse_direction("--view", options.view);
   const Direction light = parse_direction("--light", options.light);
   check_image_path(options.output);
@@ -126,7 +126,7 @@ void extract(const Options& options, Session& session) {
 }  // namespace
 
 void add_extract(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExtractOptions>();
   CLI::App* command = app.add_subcommand(
       "extract", "Writes the picture of one tile, seen with one view and one light");
   command->add_option("input", options->input, "Dataset folder, raw or compressed")->required();

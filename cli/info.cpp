@@ -100,7 +100,7 @@ void print(const ordered_json& value, const Session& session, const std::string&
   }
 }
 
-struct Options {
+struct InfoOptions {
   fs::path folder;
   bool asymmetry = false;
   std::vector<int> texel;
@@ -115,7 +115,7 @@ ordered_json describe_fields(const HemisphereSampling& sampling,
 }
 
 /// Figure 3 of paper 003, of one texel.
-ordered_json describe_asymmetry(const Options& options, bool raw) {
+ordered_json describe_asymmetry(const InfoOptions& options, bool raw) {
   if (!raw) {
     throw bad_input(options.folder.string(),
                     "--asymmetry is of raw BTFs; this is a compressed one");
@@ -157,7 +157,7 @@ void print_asymmetry(const ordered_json& told, const Session& session) {
   }
 }
 
-void info(const Options& options, Session& session) {
+void info(const InfoOptions& options, Session& session) {
   const fs::path& folder = options.folder;
   const bool raw = fs::exists(folder / "btf.json");
   ordered_json& measured = session.measured;
@@ -182,7 +182,7 @@ void info(const Options& options, Session& session) {
 }  // namespace
 
 void add_info(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand("info", "Tells what a dataset is");
   command->add_option("dataset", options->folder, "Dataset folder, raw or compressed")->required();
   CLI::Option* asymmetry = command->add_flag(

@@ -31,7 +31,7 @@ std::vector<std::string> names_of(const std::map<std::string, T>& values) {
   return names;
 }
 
-struct Options {
+struct RenderOptions {
   std::string scene;
   std::vector<std::string> btfs;
   std::string output;
@@ -106,7 +106,7 @@ void report(const RenderStatistics& statistics, const Image& image, Session& ses
   }
 }
 
-void run(Options& options, Session& session) {
+void run(RenderOptions& options, Session& session) {
   options.settings.max_bounces = parse_max_bounces(options.max_bounces);
   options.settings.lod = parse_lod(options.lod);
   options.settings.integrator = integrators.at(options.integrator);
@@ -130,7 +130,7 @@ void run(Options& options, Session& session) {
 
 void add_render(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("render", "Render a scene file with the path tracer");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderOptions>();
   command->add_option("scene", options->scene, "Scene file (TOML)")
       ->required()
       ->type_name("SCENE.toml");

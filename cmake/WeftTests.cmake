@@ -12,6 +12,8 @@ function(weft_tests folder)
   add_executable(test_${folder} ${sources})
   target_include_directories(test_${folder} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(test_${folder} PRIVATE WEFT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  # Test files name what they make alike (fit, run, size).
+  set_target_properties(test_${folder} PROPERTIES UNITY_BUILD OFF)
   target_precompile_headers(test_${folder} PRIVATE <catch2/catch.hpp>)
   target_link_libraries(test_${folder} PRIVATE ${arg_LINK} Catch2::Catch2WithMain weft_program)
 

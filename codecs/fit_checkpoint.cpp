@@ -90,7 +90,7 @@ void FitCheckpoint::keep(const std::string& name, std::span<const double> values
     out.write(reinterpret_cast<const char*>(bytes.data()),
               static_cast<std::streamsize>(bytes.size()));
     out.close();
-    if (!out) throw failed(path.string(), "cannot be written: " + std::string(strerror(errno)));
+    if (!out) throw failed(path.string(), "cannot be written: " + system_reason(errno));
     fs::rename(aside, path);
   } catch (const fs::filesystem_error& error) {
     throw failed(path.string(), "cannot be written: " + error.code().message());

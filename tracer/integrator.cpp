@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "btf/random.h"
+#include "tracer/frame.h"
 #include "tracer/sobol.h"
 
 namespace weft {
@@ -24,12 +25,7 @@ constexpr float bounce_spread = 0.25F;
 constexpr int roulette_depth = 4;
 constexpr float longest_survival = 0.95F;
 
-/// Cosine-weighted over the upper hemisphere (Malley): density z / pi.
-Direction cosine_direction(float u0, float u1) {
-  const float r = std::sqrt(u0), phi = 2 * pi * u1;
-  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u0)};
-}
-
+/// Of what `cosine_direction` draws.
 float cosine_pdf(const Direction& light) {
   return light.z / pi;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <system_error>
 
 #include "btf/error.h"
 #include "tracer/obj_file.h"
@@ -29,8 +28,7 @@ void require_file(const std::filesystem::path& path) {
     throw bad_input(path.string(), "is no mesh file that is known here", "known: .obj, .ply");
   }
   if (!std::ifstream(path)) {
-    throw bad_input(path.string(), "cannot be opened: " +
-                                       std::error_code(errno, std::generic_category()).message());
+    throw bad_input(path.string(), "cannot be opened: " + system_reason(errno));
   }
 }
 

@@ -115,7 +115,7 @@ Wall read_wall(const Settings& settings) {
   return wall;
 }
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_brick(const Settings& settings) {
   const Wall wall = read_wall(settings);
   // Deep enough that no tilt or recess lifts the back out of the mortar.
   const TriangleMesh block =
@@ -155,7 +155,7 @@ MesostructureType brick_type() {
       "tilt = 2            largest tilt of a brick, in degrees\n"
       "seed = 1            of all that is random\n"
       "resolution = 192    vertices along each side of the tile",
-      build,
+      build_brick,
       {{"brick", "type = 'lambert'\nalbedo = [0.42, 0.16, 0.1]"},
        {"pale_brick", "type = 'lambert'\nalbedo = [0.47, 0.21, 0.13]"},
        {"dark_brick", "type = 'lambert'\nalbedo = [0.34, 0.125, 0.085]"},

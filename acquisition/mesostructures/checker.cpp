@@ -34,7 +34,7 @@ struct Checker {
   }
 };
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_checker(const Settings& settings) {
   const Checker checker{settings.number("height", 0.15, 0, 10),
                         settings.number("smoothing", 0.02, 1e-6, 100),
                         static_cast<int>(settings.integer("resolution", 256, 4, 4096))};
@@ -61,7 +61,7 @@ MesostructureType checker_type() {
           "height = 0.15       of the pads over the low parts, in tiles\n"
           "smoothing = 0.02    k of s / sqrt(s^2 + k): smaller is steeper\n"
           "resolution = 256    quads along each side of the tile",
-          build,
+          build_checker,
           {{"raised", "type = 'plastic'\nalbedo = [0.8, 0.45, 0.5]\nior = 1.5\nalpha = 0.15"},
            {"low", "type = 'plastic'\nalbedo = [0.15, 0.2, 0.7]\nior = 1.5\nalpha = 0.5"}}};
 }

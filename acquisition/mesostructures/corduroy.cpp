@@ -52,7 +52,7 @@ struct Corduroy {
   }
 };
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_corduroy(const Settings& settings) {
   const auto wales = static_cast<int>(settings.integer("wales", 5, 1, 64));
   const auto rows = static_cast<int>(settings.integer("tuft_rows", 48, 8, 512));
   const auto seed = static_cast<std::uint64_t>(settings.integer("seed", 1, 0, 1'000'000));
@@ -96,7 +96,7 @@ MesostructureType corduroy_type() {
           "fuzz = 0.045        unevenness of the cut ends, in heights of the pile\n"
           "seed = 1            of all that is random\n"
           "resolution = 384    quads along each side of the tile",
-          build,
+          build_corduroy,
           {{"pile", "type = 'lambert'\nalbedo = [0.3, 0.16, 0.07]"},
            {"ground", "type = 'lambert'\nalbedo = [0.16, 0.08, 0.035]"}}};
 }

@@ -70,7 +70,7 @@ TriangleMesh stones_at_rest(const Gravel& gravel) {
   return mesh;
 }
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_gravel(const Settings& settings) {
   Gravel gravel{};
   gravel.stones = static_cast<int>(settings.integer("stones", 170, 1, 2000));
   gravel.largest = settings.number("largest", 0.11, 0.01, 0.3);
@@ -100,7 +100,7 @@ MesostructureType gravel_type() {
           "bumps = 0.06       depth of the unevenness of a stone's faces, in radii\n"
           "seed = 1           of all that is random\n"
           "subdivide = 3      a stone has 20 * 4^subdivide triangles",
-          build,
+          build_gravel,
           {{"stone", "type = 'lambert'\nalbedo = [0.36, 0.34, 0.32]"},
            {"pale_stone", "type = 'lambert'\nalbedo = [0.55, 0.51, 0.45]"},
            {"dark_stone", "type = 'lambert'\nalbedo = [0.2, 0.19, 0.2]"},

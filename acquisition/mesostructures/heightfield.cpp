@@ -34,7 +34,7 @@ void require_finite(const Image& image, const std::filesystem::path& file) {
   }
 }
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_heightfield(const Settings& settings) {
   const std::filesystem::path file = settings.existing_path("file");
   const double height = settings.number("height", 0.1, -10, 10);
   const auto levels = static_cast<int>(settings.integer("subdivide", 0, 0, 6));
@@ -63,7 +63,7 @@ MesostructureType heightfield_type() {
           "height = 0.1      of the value 1 over the value 0, in tiles; 8 and 16-bit images are "
           "linear 0..1\n"
           "subdivide = 0     levels of Catmull-Clark subdivision, then the limit surface; 0: none",
-          build,
+          build_heightfield,
           {{"default", "type = 'lambert'\nalbedo = 0.5"}}};
 }
 

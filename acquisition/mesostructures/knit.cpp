@@ -281,7 +281,7 @@ Knit read_knit(const Settings& settings) {
   return knit;
 }
 
-TileGeometry build(const Settings& settings) {
+TileGeometry build_knit(const Settings& settings) {
   const Knit knit = read_knit(settings);
   const CentreLine line(knit.loop);
   CurveSet curves;
@@ -322,7 +322,7 @@ MesostructureType knit_type() {
           "stray = 12          fibres in a stitch that stick out of the yarn\n"
           "steps = 20          segments of a fibre in a stitch, at least 6 a turn\n"
           "seed = 0            of what is random",
-          build,
+          build_knit,
           {{"yarn", "type = 'plastic'\nalbedo = [0.8, 0.76, 0.68]\nior = 1.5\nalpha = 0.4"},
            {"floor", "type = 'lambert'\nalbedo = [0.1, 0.08, 0.07]"}}};
 }

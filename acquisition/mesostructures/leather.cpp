@@ -36,7 +36,7 @@ struct Leather {
   }
 };
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_leather(const Settings& settings) {
   const auto pebbles = static_cast<int>(settings.integer("pebbles", 12, 4, 64));
   const auto seed = static_cast<std::uint64_t>(settings.integer("seed", 1, 0, 1'000'000));
   const double jitter = settings.number("irregularity", 0.8, 0, 1);
@@ -71,7 +71,7 @@ MesostructureType leather_type() {
           "wrinkles = 0.06     height of the fine grain on the pebbles, of theirs\n"
           "seed = 1            of all that is random\n"
           "resolution = 384    quads along each side of the tile",
-          build,
+          build_leather,
           {{"leather", "type = 'plastic'\nalbedo = [0.2, 0.065, 0.025]\nior = 1.5\nalpha = 0.25"}}};
 }
 

@@ -63,7 +63,7 @@ TriangleMesh flat_faces(PolygonMesh polygons) {
   return mesh;
 }
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_mesh(const Settings& settings) {
   const std::filesystem::path file = settings.existing_path("file");
   const bool y_up = settings.choice("up", {"z", "y"}) == "y";
   const bool fit = settings.flag("fit", false);
@@ -96,7 +96,7 @@ MesostructureType mesh_type() {
       "translate = [0, 0, 0]   then is added, in tiles\n"
       "subdivide = 0           levels of Catmull-Clark subdivision, then the limit surface; 0: "
       "none",
-      build,
+      build_mesh,
       {}};
 }
 

@@ -52,7 +52,7 @@ void add_torus(TriangleMesh& mesh, const Torus& torus, std::uint16_t material) {
   }
 }
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_rings(const Settings& settings) {
   std::vector<double> radii = {0.1, 0.2, 0.3, 0.4};
   if (settings.has("radii")) radii = settings.numbers("radii");
   Torus torus{0, settings.number("minor_radius", 0.03, 1e-4, 0.5),
@@ -82,7 +82,7 @@ MesostructureType rings_type() {
           "minor_radius = 0.03            half the thickness of a ring\n"
           "segments = 1024                quads along a ring\n"
           "minor_segments = 128           quads around its cross-section",
-          build,
+          build_rings,
           {{"base", "type = 'plastic'\nalbedo = [0.1, 0.15, 0.6]\nior = 1.5\nalpha = 0.15"},
            {"rings", "type = 'conductor'\nf0 = [1.0, 0.78, 0.34]\nalpha = 0.2"}}};
 }

@@ -31,7 +31,7 @@ struct Weave {
 };
 
 /// One family of yarns: along `axis`; `side` x `axis` points down.
-struct Family {
+struct FibreFamily {
   Imath::V3d axis, side;
   int count;      // of its yarns a tile
   int crossings;  // yarns of the other family a tile
@@ -39,7 +39,7 @@ struct Family {
   std::uint16_t material;
 };
 
-void add_family(PolygonMesh& cage, const Weave& weave, const Family& family) {
+void add_family(PolygonMesh& cage, const Weave& weave, const FibreFamily& family) {
   const int rings = family.crossings * weave.steps;
   const YarnForm form{.half_width = weave.width / 2 / family.count,
                       .half_thickness = weave.half_thickness,
@@ -87,10 +87,10 @@ Weave read_weave(const Settings& settings) {
   return weave;
 }
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_tissue(const Settings& settings) {
   const Weave weave = read_weave(settings);
-  const Family weft{{1, 0, 0}, {0, -1, 0}, weave.weft, weave.warp, 0, 0};
-  const Family warp{{0, 1, 0}, {1, 0, 0}, weave.warp, weave.weft, 1, 1};
+  const FibreFamily weft{{1, 0, 0}, {0, -1, 0}, weave.weft, weave.warp, 0, 0};
+  const FibreFamily warp{{0, 1, 0}, {1, 0, 0}, weave.warp, weave.weft, 1, 1};
   PolygonMesh cage;
   cage.material_names = {"weft", "warp", "floor"};
   add_family(cage, weave, weft);
@@ -117,7 +117,7 @@ MesostructureType tissue_type() {
           "sections = 24     control points around a yarn\n"
           "steps = 16        control rings from one crossing to the next\n"
           "subdivide = 1     levels of Catmull-Clark subdivision, then the limit surface",
-          build,
+          build_tissue,
           {{"weft", "type = 'plastic'\nalbedo = [0.75, 0.6, 0.42]\nior = 1.5\nalpha = 0.35"},
            {"warp", "type = 'plastic'\nalbedo = [0.6, 0.35, 0.24]\nior = 1.5\nalpha = 0.35"},
            {"floor", "type = 'lambert'\nalbedo = [0.1, 0.08, 0.07]"}}};

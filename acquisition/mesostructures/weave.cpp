@@ -151,7 +151,7 @@ std::vector<double> centre_line(const std::vector<bool>& over, const Family& fam
   return heights;
 }
 
-TriangleMesh build(const Settings& settings) {
+TriangleMesh build_weave(const Settings& settings) {
   const Draft draft = read_draft(settings);
   const auto sections = static_cast<int>(settings.integer("sections", 16, 8, 128));
   const auto steps = static_cast<int>(settings.integer("steps", 8, 8, 128));
@@ -211,7 +211,7 @@ MesostructureType weave_type() {
           "sections = 16       control points around a yarn\n"
           "steps = 8           control rings from one crossing to the next\n"
           "subdivide = 1       levels of Catmull-Clark subdivision, then the limit surface",
-          build,
+          build_weave,
           {{"weft", "type = 'plastic'\nalbedo = [0.6, 0.55, 0.48]\nior = 1.5\nalpha = 0.4"},
            {"warp", "type = 'plastic'\nalbedo = [0.6, 0.55, 0.48]\nior = 1.5\nalpha = 0.4"},
            {"floor", "type = 'lambert'\nalbedo = [0.1, 0.08, 0.07]"}}};

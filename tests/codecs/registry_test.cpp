@@ -188,7 +188,7 @@ TEST_CASE("Every codec: bytes are what its program uploads") {
   }
 }
 
-TEST_CASE("Every codec: the same bytes with one thread and with two") {
+TEST_CASE("Every codec: the same bytes with one thread and with two", "[heavy]") {
   const auto btf = realistic_btf(7, "regular:3x6");
   for (const Case& c : cases()) {
     INFO(label(c));
@@ -202,7 +202,7 @@ TEST_CASE("Every codec: the same bytes with one thread and with two") {
   }
 }
 
-TEST_CASE("Every codec: the same bytes from a scratch file as from memory") {
+TEST_CASE("Every codec: the same bytes from a scratch file as from memory", "[heavy]") {
   const auto btf = realistic_btf(6, "regular:3x6");
   const TemporaryFolder scratch;
   for (const Case& c : cases()) {
@@ -270,7 +270,7 @@ void check_answers(const Hard& data) {
 
 }  // namespace
 
-TEST_CASE("Every codec: black, constant and dark data give finite, right answers") {
+TEST_CASE("Every codec: black, constant and dark data give finite, right answers", "[heavy]") {
   const auto black = [](int, int, const Direction&, const Direction&) { return Rgb(0, 0, 0); };
   const auto half_black = [](int x, int, const Direction&, const Direction&) {
     return x % 2 == 0 ? Rgb(0, 0, 0) : Rgb(0.5F, 0, 0.5F);
@@ -287,7 +287,7 @@ TEST_CASE("Every codec: black, constant and dark data give finite, right answers
 
 // A sum of logarithms knows no lone pair, and a coarse map no lone light. Nor do the six numbers of
 // a biquadratic (whose best errs 96 %), or lobes of lx vx, ly vy and lz vz alone.
-TEST_CASE("Every codec: one bright pair, or light, gives finite, right answers") {
+TEST_CASE("Every codec: one bright pair, or light, gives finite, right answers", "[heavy]") {
   const auto spike = [](int, int, const Direction& l, const Direction& v) {
     return l.z > 0.99F && v.z > 0.99F ? Rgb(10, 10, 10) : Rgb(0, 0, 0);
   };

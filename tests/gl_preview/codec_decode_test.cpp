@@ -131,7 +131,7 @@ std::array<std::size_t, 3> maps_in_use(const GlProgram& program) {
 
 }  // namespace
 
-TEST_CASE("Every codec decodes on the GPU as on the CPU") {
+TEST_CASE("Every codec decodes on the GPU as on the CPU", "[heavy]") {
   const auto context = gl_or_skip();
   if (!context) return;
   check_variants(procedural_btf(8, 8, "ubo81", PixelType::half));
