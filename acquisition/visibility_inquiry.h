@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "acquisition/cell_corners.h"
@@ -52,7 +53,11 @@ class VisibilityInquiry {
   const std::vector<VisibilityEvidence>& evidence() const { return evidence_; }
 
  private:
-  Round ask_packet(std::size_t first, int round, const std::vector<VisibilityAnswer>& answers);
+  // Of a batch of cells from `first` on.
+  Round ask_batch(std::size_t first, int round, const std::vector<VisibilityAnswer>& answers);
+  // Sixteen of them at most, whose numbers and ray origins are counted from `first`, and a light.
+  Round ask_packet(std::size_t first, std::span<const std::uint16_t> cells, std::size_t light,
+                   std::span<const Vec3> origins, const std::vector<VisibilityAnswer>& answers);
 
   const std::vector<Facet>& facets_;
   const LightSet& lights_;

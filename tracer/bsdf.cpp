@@ -21,11 +21,13 @@ constexpr int fresnel_samples = 256;
 // `Number`: a float, or sixteen side by side.
 template <typename Number>
 Number fresnel_dielectric(const Number& cosine, float ior) {
-  const Number sine2 = (1 - cosine * cosine) / (ior * ior);
+  const Number sine2 = (1 - cosine * cosine) * (1 / (ior * ior));
   const Number t = square_root(larger(1 - sine2, 0.0F));  // 0, all reflected, where sine2 >= 1
-  const Number s = (cosine - ior * t) / (cosine + ior * t);
-  const Number p = (t - ior * cosine) / (t + ior * cosine);
-  return select(t > 0, 0.5F * (s * s + p * p), t + 1);
+  // (s^2 + p^2) / 2, s and p the amplitudes of both polarisations, over one denominator.
+  const Number s_over = cosine - ior * t, s_under = cosine + ior * t;
+  const Number p_over = t - ior * cosine, p_under = t + ior * cosine;
+  const Number over = s_over * p_under, other = p_over * s_under, under = s_under * p_under;
+  return select(t > 0, 0.5F * (over * over + other * other) / (under * under), t + 1);
 }
 
 // Exact, unpolarised, from vacuum onto eta + i k.
@@ -38,10 +40,11 @@ Number fresnel_conductor(const Number& cosine, float eta, float k) {
   const Number t1 = a2b2 + c2;
   const Number a = square_root(larger(0.5F * (a2b2 + t0), 0.0F));
   const Number t2 = 2 * cosine * a;
-  const Number s = (t1 - t2) / (t1 + t2);
   const Number t3 = c2 * a2b2 + s2 * s2;
   const Number t4 = t2 * s2;
-  return 0.5F * (s + s * (t3 - t4) / (t3 + t4));
+  // (s + p) / 2 with s = (t1 - t2) / (t1 + t2) and p = s (t3 - t4) / (t3 + t4), over one
+  // denominator.
+  return (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4));
 }
 
 template <typename Number>
@@ -68,11 +71,7 @@ struct Bsdf::AlbedoTable {
     const IntLanes i =
         __builtin_convertvector(smaller(position, table_size - 2), IntLanes);  // cuts off
     const FloatLanes t = position - __builtin_convertvector(i, FloatLanes);
-    FloatLanes low;
-    FloatLanes high;
-    for (int k = 0; k < lanes; ++k) low[k] = albedo[i[k]];
-    for (int k = 0; k < lanes; ++k) high[k] = albedo[i[k] + 1];
-    return low * (1 - t) + high * t;
+    return look_up(albedo, i) * (1 - t) + look_up(albedo, i + 1) * t;
   }
 
   /// @param fresnel  reflectance of a facet at a cosine.
@@ -185,10 +184,9 @@ RgbLanes Bsdf::fresnel(const FloatLanes& cosine) const {
 Rgb Bsdf::evaluate(const Direction& light, const Direction& view) const {
   if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
   if (kind_ == Kind::lambert) return albedo_ * (inverse_pi * light.z);
-  const Vec3 half_vector = (light + view).normalized();
-  const float specular = ggx::density(half_vector, alpha_) *
-                         ggx::masking_shadowing(light, view, alpha_) / (4 * view.z);
-  const Rgb single = fresnel(std::min(1.0F, light ^ half_vector)) * specular;
+  const Vec3 sum = light + view;
+  const float specular = ggx::reflection(light, sum, view, ggx::lambda(view, alpha_), alpha_);
+  const Rgb single = fresnel(std::min(1.0F, 0.5F * sum.length())) * specular;
   // What the specular lobe keeps back in either direction; 1 - average is 0 only where nothing is
   // lost.
   const float lost = (1 - table_->at(light.z)) * (1 - table_->at(view.z)) * inverse_pi * light.z /
@@ -208,14 +206,10 @@ Bsdf::ViewTerms Bsdf::view_terms(const Direction& view) const {
 RgbLanes Bsdf::evaluate_glossy(const Vec3Lanes& lights, const ViewTerms& terms) const {
   const FloatLanes zero{};
   const IntLanes above = lights.z > 0;
-  Vec3Lanes half_vector{lights.x + terms.view.x, lights.y + terms.view.y, lights.z + terms.view.z};
-  const FloatLanes inverse_length = 1 / square_root(dot(half_vector, half_vector));
-  half_vector = {half_vector.x * inverse_length, half_vector.y * inverse_length,
-                 half_vector.z * inverse_length};
-  const FloatLanes specular =
-      ggx::density(half_vector, alpha_) /
-      ((1 + ggx::lambda(lights, alpha_) + terms.lambda) * (4 * terms.view.z));
-  const RgbLanes f = fresnel(smaller(dot(lights, half_vector), 1.0F));
+  const Vec3Lanes sum{lights.x + terms.view.x, lights.y + terms.view.y, lights.z + terms.view.z};
+  const FloatLanes specular = ggx::reflection(lights, sum, terms.view, terms.lambda, alpha_);
+  // Between light and half vector: the sum is twice as long as its cosine.
+  const RgbLanes f = fresnel(smaller(0.5F * square_root(dot(sum, sum)), 1.0F));
   const FloatLanes lost = (1 - table_->at(lights.z)) * lights.z;
   return {select(above, f.r * specular + lost * terms.lost.x, zero),
           select(above, f.g * specular + lost * terms.lost.y, zero),
