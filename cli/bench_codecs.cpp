@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct BenchCodecsOptions {
   std::vector<std::string> codecs;
   std::string data;
   std::string mesostructure;
@@ -47,7 +47,7 @@ struct Options {
 constexpr std::array<const char*, 3> compared_structures{"checker", "rings", "tissue"};
 
 /// The registry's rows that were chosen, in its order; all where none was.
-std::vector<Codec> chosen_codecs(const Options& options) {
+std::vector<Codec> chosen_codecs(const BenchCodecsOptions& options) {
   for (const std::string& name : options.codecs) {
     codec_named(name);
     if (std::ranges::count(options.codecs, name) > 1)
@@ -70,17 +70,17 @@ std::vector<CodecVariant> of_chosen(std::span<const CodecVariant> all,
   return variants;
 }
 
-fs::path structure_file(const std::string& name, const Options& options) {
+fs::path structure_file(const std::string& name, const BenchCodecsOptions& options) {
   return scene_folder(options.scenes) / "mesostructures" / (name + ".toml");
 }
 
-fs::path tissue_or_named(const Options& options) {
+fs::path tissue_or_named(const BenchCodecsOptions& options) {
   return options.mesostructure.empty() ? structure_file("tissue", options)
                                        : fs::path(options.mesostructure);
 }
 
 fs::path traced(const fs::path& file, int texels, const std::string& directions,
-                const Options& options, const Session& session) {
+                const BenchCodecsOptions& options, const Session& session) {
   AcquisitionSettings settings;
   settings.trace.width = settings.trace.height = texels;
   settings.trace.spp = options.spp;
@@ -172,8 +172,8 @@ CodecBenches bench_variants(const std::vector<CodecVariant>& variants,
   return benches;
 }
 
-CodecBenches bench_factors(const std::vector<CodecVariant>& variants, const Options& options,
-                           Session& session) {
+CodecBenches bench_factors(const std::vector<CodecVariant>& variants,
+                           const BenchCodecsOptions& options, Session& session) {
   const fs::path data = options.variant_data.empty()
                             ? traced(tissue_or_named(options), options.texels,
                                      options.variant_directions, options, session)
@@ -183,23 +183,30 @@ CodecBenches bench_factors(const std::vector<CodecVariant>& variants, const Opti
   return bench_variants(variants, btf, session.measured["variants"], session);
 }
 
-/// The bars of codecs against each other, on small tiles of several structures.
-std::vector<Bar> bench_comparisons(const std::vector<CodecVariant>& variants,
-                                   const Options& options, Session& session) {
+/// Fits that are compared, and what with.
+struct ComparedFits {
+  const char* name;  ///< in the JSON
+  std::vector<CodecVariant> variants;
+  int texels;  ///< a side of the tile
+};
+
+/// The bars of codecs against each other, on several structures.
+std::vector<Bar> bench_comparisons(const ComparedFits& compared, const BenchCodecsOptions& options,
+                                   Session& session) {
   std::vector<Bar> bars;
   for (const std::string structure : compared_structures) {
-    Json& measured = session.measured["comparisons"][structure];
-    const auto btf = read_data(traced(structure_file(structure, options), options.comparison_texels,
+    Json& measured = session.measured["comparisons"][structure][compared.name];
+    const auto btf = read_data(traced(structure_file(structure, options), compared.texels,
                                       options.directions, options, session),
                                measured["dataset"]);
     say_head(fmt::format("\n{}, {} x {} texels", structure, btf->width(), btf->height()), session);
-    const CodecBenches fits = bench_variants(variants, btf, measured["codecs"], session);
+    const CodecBenches fits = bench_variants(compared.variants, btf, measured["codecs"], session);
     std::ranges::move(comparison_bars(structure, fits), std::back_inserter(bars));
   }
   return bars;
 }
 
-void bench_codecs(const Options& options, Session& session) {
+void bench_codecs(const BenchCodecsOptions& options, Session& session) {
   const std::vector<Codec> chosen = chosen_codecs(options);
   // All that is named is looked at before any is measured.
   for (const std::string& data : {options.data, options.variant_data}) {
@@ -208,10 +215,14 @@ void bench_codecs(const Options& options, Session& session) {
   check_elevations(named_directions(options.directions), "direction");
   check_elevations(named_directions(options.variant_directions), "direction");
   if (!options.mesostructure.empty()) read_mesostructure(options.mesostructure);
-  const std::vector<CodecVariant> compared =
-      options.comparisons ? of_chosen(compared_variants(), chosen) : std::vector<CodecVariant>();
+  std::vector<ComparedFits> comparisons;
+  if (options.comparisons) {
+    comparisons = {{"models", of_chosen(compared_models(), chosen), options.texels},
+                   {"kernels", of_chosen(compared_kernels(), chosen), options.comparison_texels}};
+    std::erase_if(comparisons, [](const ComparedFits& c) { return c.variants.empty(); });
+  }
   for (const std::string structure : compared_structures) {
-    if (!compared.empty()) read_mesostructure(structure_file(structure, options));
+    if (!comparisons.empty()) read_mesostructure(structure_file(structure, options));
   }
 
   session.measured["codecs"] = Json::object();  // first in what is printed
@@ -224,7 +235,7 @@ void bench_codecs(const Options& options, Session& session) {
   if (options.variants && !factors.empty())
     factor_benches = bench_factors(factors, options, session);
   std::vector<Bar> bars = codec_bars(codec_benches, factor_benches);
-  if (!compared.empty())
+  for (const ComparedFits& compared : comparisons)
     std::ranges::move(bench_comparisons(compared, options, session), std::back_inserter(bars));
   report_bars(bars, session);
 }
@@ -232,16 +243,16 @@ void bench_codecs(const Options& options, Session& session) {
 }  // namespace
 
 void add_bench_codecs(CLI::App& bench, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchCodecsOptions>();
   CLI::App* codecs = bench.add_subcommand(
       "codecs",
       "Fit every codec with its defaults to one dataset, and measure the fit (seconds, memory over "
       "that of the raw data), decoding on one thread (ns a query, one by one and batched: median "
       "of 301 passes over 1,024 fixed queries), error at the samples and bytes, and with --json "
       "each level of detail's times and error between the samples; then CMF, HF and laplacian by "
-      "their parameters, on directions as dense as their paper's, and lobes, PTM, Lafortune models "
-      "and SRBF against each other, on small tiles of checker, rings and tissue. Datasets are "
-      "traced once and kept in $XDG_CACHE_HOME/weft or ~/.cache/weft");
+      "their parameters, on directions as dense as their paper's, and lobes, PTM and Lafortune "
+      "models against each other on checker, rings and tissue, and SRBF by its variables on small "
+      "tiles of them. Datasets are traced once and kept in $XDG_CACHE_HOME/weft or ~/.cache/weft");
   codecs
       ->add_option("--codec", options->codecs,
                    "Only this one, and its variants; may be repeated. Default: all")
@@ -271,7 +282,7 @@ void add_bench_codecs(CLI::App& bench, Session& session) {
                    "SRBF that takes minutes); on unless --no-comparisons");
   codecs
       ->add_option("--comparison-texels", options->comparison_texels,
-                   "Texels a side of the tiles that they are compared on")
+                   "Texels a side of the tiles that SRBF is compared by its variables on")
       ->capture_default_str()
       ->check(whole_number(16384, 1));
   codecs->add_option(

@@ -239,16 +239,16 @@ below() { # NAME OTHER
 }
 
 converged() {
-  printf '\n### Converged\n\nRelative RMSE in %% of level 0 in halfs after 300 iterations a descent, and how far optimal is below; data of 8 bounces. All but optimal have three sweeps more.\n\n'
+  printf '\n### Converged\n\nRelative RMSE in %% of level 0 in halfs after 300 iterations a descent, and how far optimal is below; three sweeps more than the defaults; data of 8 bounces.\n\n'
   jq -r 'def percent: . * 10000 | round / 100;
     ["half-light-view", "half-half-half", "half-difference", "univariate"] as $others |
     "| BTF | optimal | \($others | join(" | | ")) | |", "|---|---|\("---|" * 8)",
-    (.comparisons | to_entries[] | .value.codecs as $fits | $fits["srbf optimal"].relative_rmse as $optimal |
+    (.comparisons | to_entries[] | .value.kernels.codecs as $fits | $fits["srbf optimal"].relative_rmse as $optimal |
       "| \(.key) | \($optimal | percent) | " + ($others | map($fits["srbf \(.)"].relative_rmse |
         "\(percent) | \((1 - $optimal / .) * 1000 | round / 10) %") | join(" | ")) + " |")' "$folder/bench.json"
-  printf '\n### What is asked of fitted codecs\n\nFrom `weft bench codecs`; the first ones on tissue of 64 x 64 texels and 8 bounces, what names a structure on %s x %s texels.\n\n' "$texels" "$texels"
+  printf '\n### What is asked of fitted codecs\n\nFrom `weft bench codecs`; data of 64 x 64 texels and 8 bounces, of tissue where no structure is named; what compares SRBF with itself on %s x %s texels.\n\n' "$texels" "$texels"
   jq -r '"| | measured | to reach | |", "|---|---:|---:|---|",
-    (.bars[] | "| \(.what) | \(.value * 100 | round / 100) \(.unit) | " +
+    (.bars[] | select(.what | test("over batched|memory") | not) | "| \(.what) | \(.value * 100 | round / 100) \(.unit) | " +
       (if has("below") then "below \(.below)" else "at least \(.at_least)" end) +
       (if .met then " | met |" else " | **missed** |" end))' "$folder/bench.json"
 }

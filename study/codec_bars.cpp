@@ -26,15 +26,19 @@ std::span<const CodecVariant> factor_variants() {
   return variants;
 }
 
-std::span<const CodecVariant> compared_variants() {
-  // SRBF's optimal angles fit every level with fixed ones first, so that the others get more
-  // sweeps.
-  static const std::array<CodecVariant, 9> variants{{
+std::span<const CodecVariant> compared_models() {
+  static const std::array<CodecVariant, 3> variants{{
       {"lobes", "lobes", {}},
       {"ptm", "ptm", {}},
       {"lafortune", "lafortune", {}},
-      {"srbf optimal", "srbf", {"iterations=300"}},
-      {"srbf optimal float", "srbf", {"iterations=300", "bits=float"}},
+  }};
+  return variants;
+}
+
+std::span<const CodecVariant> compared_kernels() {
+  static const std::array<CodecVariant, 6> variants{{
+      {"srbf optimal", "srbf", {"iterations=300", "sweeps=4"}},
+      {"srbf optimal float", "srbf", {"iterations=300", "sweeps=4", "bits=float"}},
       {"srbf half-light-view", "srbf", {"modes=half-light-view", "iterations=300", "sweeps=4"}},
       {"srbf half-half-half", "srbf", {"modes=half-half-half", "iterations=300", "sweeps=4"}},
       {"srbf half-difference", "srbf", {"modes=half-difference", "iterations=300", "sweeps=4"}},

@@ -25,9 +25,12 @@ struct CodecVariant {
 /// floats, with and without codebooks, and HF by its smoothing.
 std::span<const CodecVariant> factor_variants();
 
-/// The fits that are held against each other on one structure: lobes, PTM and Lafortune models, and
-/// SRBF by its variables, with iterations until little changes.
-std::span<const CodecVariant> compared_variants();
+/// Fits that are held against each other on one structure: lobes, PTM and Lafortune models.
+std::span<const CodecVariant> compared_models();
+
+/// The same of SRBF by its variables, with iterations and sweeps until little changes: minutes for
+/// a small tile.
+std::span<const CodecVariant> compared_kernels();
 
 using CodecBenches = std::map<std::string, CodecBench>;
 
@@ -38,7 +41,8 @@ std::vector<Bar> codec_bars(const CodecBenches& codecs, const CodecBenches& vari
 
 /// @param structure  what the bars begin with; lobes are held to half of PTM's difference on
 ///                   "checker" and "rings", to less than it on others.
-/// @param fits       of `compared_variants` on that structure, by their names; some may be missing.
+/// @param fits       of `compared_models` or `compared_kernels` on it, by their names; some may be
+/// missing.
 std::vector<Bar> comparison_bars(const std::string& structure, const CodecBenches& fits);
 
 }  // namespace weft

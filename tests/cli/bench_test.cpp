@@ -87,17 +87,16 @@ TEST_CASE("bench codecs compares fitted codecs on several structures") {
   const std::string cache = "XDG_CACHE_HOME=" + (temporary.path / "cache").string();
   const std::string scenes = std::string(WEFT_SOURCE_DIR) + "/scenes";
   const Outcome outcome = run_program(
-      {"env",   cache,     WEFT_BINARY, "bench",        "codecs",      "--codec",
-       "lobes", "--codec", "ptm",       "--data",       "small.btf",   "--comparison-texels",
-       "2",     "--spp",   "2",         "--directions", "regular:2x4", "--scenes",
-       scenes,  "--json"},
+      {"env",     cache,          WEFT_BINARY,   "bench",     "codecs",   "--codec", "lobes",
+       "--codec", "ptm",          "--data",      "small.btf", "--texels", "2",       "--spp",
+       "2",       "--directions", "regular:2x4", "--scenes",  scenes,     "--json"},
       temporary.path);
   REQUIRE(outcome.exit_code == 0);
   const Json json = Json::parse(outcome.out);
   const std::vector<std::string> structures{"checker", "rings", "tissue"};
   CHECK(names_in(json["comparisons"]) == structures);
   for (const std::string& structure : structures) {
-    const Json& compared = json["comparisons"][structure];
+    const Json& compared = json["comparisons"][structure]["models"];
     CHECK(compared["dataset"]["texels"] == Json({2, 2}));
     CHECK(names_in(compared["codecs"]) == std::vector<std::string>{"lobes", "ptm"});
     const double lobes = compared["codecs"]["lobes"]["luminance_difference"];

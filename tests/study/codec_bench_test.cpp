@@ -216,7 +216,8 @@ TEST_CASE("Codecs are held against each other where both were fitted to the stru
 }
 
 TEST_CASE("Every variant is of a codec that there is, and has its own name") {
-  for (const auto& variants : {weft::factor_variants(), weft::compared_variants()}) {
+  for (const auto& variants :
+       {weft::factor_variants(), weft::compared_models(), weft::compared_kernels()}) {
     for (const weft::CodecVariant& variant : variants) {
       CHECK_NOTHROW(weft::codec_named(variant.codec));
       CHECK(std::ranges::count(variants, variant.name, &weft::CodecVariant::name) == 1);
