@@ -300,18 +300,18 @@ void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& orig
       local.y = dot(frame.y, group);
     }
     RgbLanes value = vertex.bsdf->evaluate(local, terms);
-    const IntLanes facing = dot(vertex.facet_normal, group) > 0;
-    const FloatLanes zero{};
-    value.r = select(facing, value.r * path.throughput.x, zero);
-    value.g = select(facing, value.g * path.throughput.y, zero);
-    value.b = select(facing, value.b * path.throughput.z, zero);
+    value.r *= path.throughput.x;
+    value.g *= path.throughput.y;
+    value.b *= path.throughput.z;
+    const std::uint16_t facing = bits_of_lanes(dot(vertex.facet_normal, group) > 0);
     const auto [known, visible] = vertex.answers[g];
-    const IntLanes arrives = lanes_of_bits(visible);
+    const IntLanes arrives = lanes_of_bits(visible & facing);
+    const FloatLanes zero{};
     wave[0] += select(arrives, value.r, zero);
     wave[1] += select(arrives, value.g, zero);
     wave[2] += select(arrives, value.b, zero);
     // A value that is not a number goes on, to be refused where the view is stored.
-    const auto asked = static_cast<std::uint16_t>(lights.used_lanes(g) &
+    const auto asked = static_cast<std::uint16_t>(lights.used_lanes(g) & facing &
                                                   ~bits_of_lanes(value.r + value.g + value.b <= 0));
     statistics_.visibility_queries += std::popcount(unsigned{asked});
     for (unsigned left = asked & ~known; left != 0; left &= left - 1) {

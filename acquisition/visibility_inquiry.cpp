@@ -55,6 +55,11 @@ VisibilityInquiry::Round operator+(const VisibilityInquiry::Round& a,
 
 }  // namespace
 
+void VisibilityEvidence::add(const VisibilityEvidence& more) {
+  weft::add(seen, more.seen);
+  weft::add(hidden, more.hidden);
+}
+
 VisibilityInquiry::VisibilityInquiry(const std::vector<Facet>& facets, const LightSet& lights,
                                      const PeriodicScene& scene, std::vector<Cell> cells,
                                      CellCorners corners, std::vector<std::uint16_t> wanted,
@@ -151,9 +156,7 @@ void VisibilityInquiry::agree(std::vector<VisibilityAnswer>& answers) {
   tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t c) {
     for (const std::uint32_t corner : corners_.of_cell[c]) {
       for (std::size_t g = 0; g < groups_; ++g) {
-        const VisibilityEvidence& own = evidence_[c * groups_ + g];
-        add(around[corner * groups_ + g].seen, own.seen);
-        add(around[corner * groups_ + g].hidden, own.hidden);
+        around[corner * groups_ + g].add(evidence_[c * groups_ + g]);
       }
     }
   });

@@ -21,6 +21,9 @@ struct VisibilityAnswer {
 struct VisibilityEvidence {
   std::uint16_t seen = 0;    ///< lights that some point sees
   std::uint16_t hidden = 0;  ///< lights that some point does not see
+
+  /// May be called from several threads at once; the order makes no difference.
+  void add(const VisibilityEvidence& more);
 };
 
 class VisibilityInquiry {

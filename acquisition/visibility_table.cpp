@@ -1,5 +1,7 @@
 #include "acquisition/visibility_table.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <bit>
 #include <optional>
@@ -66,9 +68,9 @@ std::vector<VisibilityEvidence> evidence_around(const std::vector<Facet>& facets
     for (const std::uint32_t corner : corners.of_cell[c]) touched[corner] = true;
   }
   std::vector<VisibilityEvidence> around(numbers.count() * groups);
-  for (std::size_t c = 0; c < is_cut.size(); ++c) {
+  tbb::parallel_for(std::size_t{0}, is_cut.size(), [&](std::size_t c) {
     if (std::ranges::none_of(corners.of_cell[c], [&](auto corner) { return touched[corner]; }))
-      continue;
+      return;
     const Cell& cell = inquiry.cells()[c];
     for (const Vec3& point : rim_of(facets[cell.facet], cell, side)) {
       const std::optional<std::uint32_t> corner = numbers.find(point);
@@ -76,12 +78,11 @@ std::vector<VisibilityEvidence> evidence_around(const std::vector<Facet>& facets
       for (std::size_t g = 0; g < groups; ++g) {
         const VisibilityEvidence& own = inquiry.evidence()[c * groups + g];
         const unsigned kept = is_cut[c] ? ~unsigned{uncertain.lights[c * groups + g]} : ~0U;
-        VisibilityEvidence& there = around[*corner * groups + g];
-        there.seen |= static_cast<std::uint16_t>(own.seen & kept);
-        there.hidden |= static_cast<std::uint16_t>(own.hidden & kept);
+        around[*corner * groups + g].add({.seen = static_cast<std::uint16_t>(own.seen & kept),
+                                          .hidden = static_cast<std::uint16_t>(own.hidden & kept)});
       }
     }
-  }
+  });
   return around;
 }
 

@@ -85,15 +85,20 @@ void check_place(const fs::path& folder) {
 
 // Whether there is any view. Throws where one is of other settings.
 bool check_views(const fs::path& folder, const BtfHeader& header) {
-  bool any = false;
+  std::vector<fs::path> views;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with("view_") || entry.path().extension() != ".exr") continue;
-    const std::string found = read_view_header(entry.path()).provenance;
-    if (found != header.provenance) throw other_settings(folder, name, found, header);
-    any = true;
+    if (name.starts_with("view_") && entry.path().extension() == ".exr")
+      views.push_back(entry.path());
   }
-  return any;
+  std::vector<std::string> found(views.size());
+  tbb::parallel_for(std::size_t{0}, views.size(),
+                    [&](std::size_t i) { found[i] = read_view_header(views[i]).provenance; });
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (found[i] != header.provenance)
+      throw other_settings(folder, views[i].filename().string(), found[i], header);
+  }
+  return !views.empty();
 }
 
 // Says whose the folder is while no view does, so that a run of other settings that begins at the
@@ -168,13 +173,18 @@ void finish_btf(const fs::path& folder, const BtfHeader& header) {
   if (!missing.empty()) {
     throw bad_input(folder.string(), "has no " + view_file_name(missing.front()) + " yet");
   }
+  std::vector<std::vector<float>> errors(header.views.size());
+  std::vector<std::string> checksums(header.views.size());
+  tbb::parallel_for(std::size_t{0}, header.views.size(), [&](std::size_t v) {
+    const fs::path path = folder / view_file_name(v);
+    errors[v] = read_standard_errors(path);
+    checksums[v] = file_checksum(path);
+  });
   Json files = Json::object();
   Json noise = Json::array();
   for (std::size_t v = 0; v < header.views.size(); ++v) {
-    const fs::path path = folder / view_file_name(v);
-    const std::vector<float> errors = read_standard_errors(path);
-    if (!errors.empty()) noise.push_back(errors);
-    files[view_file_name(v)] = file_checksum(path);
+    if (!errors[v].empty()) noise.push_back(errors[v]);
+    files[view_file_name(v)] = checksums[v];
   }
   Json json = {{"format", "weft-btf"},
                {"version", file_version},
