@@ -18,6 +18,9 @@ constexpr std::uint32_t check_every = 256;
 // times: checks as rare as those above would add much noise where wrong answers are frequent, and
 // save little more (docs/acquisition.md).
 constexpr std::uint32_t check_open_every = 4;
+// Connections of later vertices that wait, so that packets are full, for those of more bounces; no
+// more than 8 MB, where the table knows little and paths are long.
+constexpr std::size_t most_waiting = std::size_t{1} << 18;
 constexpr std::uint32_t most_samples = 64;      // of each texel in a wave
 constexpr std::uint32_t samples_a_check = 16;   // of each texel in a wave, where it may be the last
 constexpr std::uint64_t cell_key = 0x43454C4C;  // stands for a view where paths begin on cells
@@ -223,6 +226,8 @@ void PathBlock::follow_paths(bool from_surface) {
     }
     flush(Coherence::incoherent);
     if (bounce == 0) trace_connections(first_connections_, Coherence::coherent);
+    if (later_connections_.size() > most_waiting)
+      trace_connections(later_connections_, Coherence::incoherent);
     if (last && tracer_.settings().max_bounces == TraceSettings::unlimited)
       statistics_.trapped += static_cast<std::int64_t>(paths_.size());
   }

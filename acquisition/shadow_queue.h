@@ -31,7 +31,10 @@ class ShadowQueue {
 
   void add(std::size_t light, const Connection& connection) {
     connections_[light].push_back(connection);
+    ++size_;
   }
+  /// Of all lights.
+  std::size_t size() const { return size_; }
 
   /// Traces all, then forgets them.
   /// @param log     gets a copy of every packet before it is traced; none where null.
@@ -55,11 +58,13 @@ class ShadowQueue {
       }
       queue.clear();
     }
+    size_ = 0;
     return traced_on;
   }
 
  private:
   std::vector<std::vector<Connection>> connections_;
+  std::size_t size_ = 0;
 };
 
 }  // namespace weft

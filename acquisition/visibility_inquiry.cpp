@@ -15,7 +15,7 @@ namespace weft {
 
 namespace {
 
-// Of what is certain all around, one packet of cells in so many is asked again.
+// Of what is certain all around, sixteen cells in a row of so many times sixteen are asked again.
 constexpr std::int64_t sparsely = 32;
 // Cells that share packets of rays.
 constexpr std::size_t batch = 256;

@@ -42,8 +42,8 @@ class VisibilityInquiry {
   };
 
   /// One ray from each cell to each wanted light in front of it, but where points of the cell
-  /// disagree already. What `agree` found to be certain all around is asked of one packet in 32
-  /// only, which then stands for 32. `answers` ([cell][group]) are those so far.
+  /// disagree already. What `agree` found to be certain all around is asked of one cell in 32
+  /// only (sixteen in a row), which then stands for 32. `answers` ([cell][group]) are those so far.
   Round ask(int round, const std::vector<VisibilityAnswer>& answers);
 
   /// Writes the answers to the wanted lights: certain is what all points of a cell and of the cells

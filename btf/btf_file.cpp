@@ -83,6 +83,23 @@ void check_place(const fs::path& folder) {
   }
 }
 
+// Runs `body` on [0, count) with all threads. What the first of them throws is thrown, whatever the
+// threads.
+template <typename Body>
+void for_each_in_parallel(std::size_t count, const Body& body) {
+  std::vector<std::exception_ptr> failures(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    try {
+      body(i);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
 // Whether there is any view. Throws where one is of other settings.
 bool check_views(const fs::path& folder, const BtfHeader& header) {
   std::vector<fs::path> views;
@@ -91,13 +108,12 @@ bool check_views(const fs::path& folder, const BtfHeader& header) {
     if (name.starts_with("view_") && entry.path().extension() == ".exr")
       views.push_back(entry.path());
   }
-  std::vector<std::string> found(views.size());
-  tbb::parallel_for(std::size_t{0}, views.size(),
-                    [&](std::size_t i) { found[i] = read_view_header(views[i]).provenance; });
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (found[i] != header.provenance)
-      throw other_settings(folder, views[i].filename().string(), found[i], header);
-  }
+  std::ranges::sort(views);
+  for_each_in_parallel(views.size(), [&](std::size_t i) {
+    const std::string found = read_view_header(views[i]).provenance;
+    if (found != header.provenance)
+      throw other_settings(folder, views[i].filename().string(), found, header);
+  });
   return !views.empty();
 }
 
@@ -175,7 +191,7 @@ void finish_btf(const fs::path& folder, const BtfHeader& header) {
   }
   std::vector<std::vector<float>> errors(header.views.size());
   std::vector<std::string> checksums(header.views.size());
-  tbb::parallel_for(std::size_t{0}, header.views.size(), [&](std::size_t v) {
+  for_each_in_parallel(header.views.size(), [&](std::size_t v) {
     const fs::path path = folder / view_file_name(v);
     errors[v] = read_standard_errors(path);
     checksums[v] = file_checksum(path);

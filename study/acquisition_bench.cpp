@@ -304,7 +304,7 @@ std::vector<AcquisitionCost> acquisition_costs(const Mesostructure& mesostructur
       trace.spp = static_cast<int>(part("spp", static_cast<std::size_t>(trace.spp)));
       // A few views at even steps; the table is made as for all of them.
       trace.views = views.size();
-      const std::size_t some = part("views", std::min<std::size_t>(views.size(), 8));
+      const std::size_t some = part("views", std::min<std::size_t>(views.size(), 32));
       std::vector<Direction> fewer;
       const std::size_t count = part("lights", lights.size());
       for (std::size_t l = 0; l < count; ++l) fewer.push_back(lights[l * lights.size() / count]);

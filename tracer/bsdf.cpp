@@ -14,7 +14,7 @@ namespace weft {
 namespace {
 
 constexpr float inverse_pi = std::numbers::inv_pi_v<float>;
-constexpr int table_size = 64;
+constexpr int table_size = 4 * lanes;
 constexpr int table_samples = 2048;
 constexpr int fresnel_samples = 256;
 

@@ -40,9 +40,9 @@ inline float masking_shadowing(const Direction& light, const Direction& view, fl
   return 1 / (1 + lambda(light, alpha) + lambda(view, alpha));
 }
 
-/// `density` of the half vector * `masking_shadowing` / (4 view.z), brought over one denominator,
-/// as roots and divisions are most of what lanes cost: what a mirror's facets send from `light` to
-/// `view`, times light.z. light.z > 0.
+/// `density` of the half vector * `masking_shadowing` / (4 view.z), with few roots and divisions,
+/// as these are most of what lanes cost: what a mirror's facets send from `light` to `view`, times
+/// light.z. Only where both z > 0; of other lanes it is anything.
 /// @param sum          light + view: the half vector times its length.
 /// @param view_lambda  `lambda` of the view.
 template <typename Vector>
@@ -57,8 +57,11 @@ inline auto reflection(const Vector& light, const Vector& sum, const Direction& 
   const auto seen =
       (0.5F + view_lambda) * light.z +
       0.5F * square_root(light.z * light.z + a2 * (light.x * light.x + light.y * light.y));
+  // At most 1 / a2, and the other at most 2, however small either z is.
+  const auto peak = length2 / t;
+  const auto share = light.z / seen;
   const float scale = a2 / (4 * std::numbers::pi_v<float> * view.z);
-  return select(t > 0, scale * (length2 * length2) * light.z / (t * t * seen), t * 0);
+  return select(t > 0, scale * (peak * peak) * share, t * 0);
 }
 
 /// A normal with the density of those that `view` sees; u, v in [0, 1).

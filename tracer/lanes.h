@@ -76,8 +76,9 @@ inline FloatLanes dot(const Vec3Lanes& a, const Vec3Lanes& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// table[index] of each lane; indices in [0, 64). Gathering from memory takes ten times as long.
-inline FloatLanes look_up(const std::array<float, 64>& table, const IntLanes& index) {
+/// table[index] of each lane; indices in [0, 4 * lanes). Such a table fits in registers, of which
+/// lookups are cheaper than gathering from memory.
+inline FloatLanes look_up(const std::array<float, 4 * lanes>& table, const IntLanes& index) {
 #ifdef __AVX512DQ__
   const auto& i = reinterpret_cast<const __m512i&>(index);
   const auto quarter = [&](int n) { return _mm512_loadu_ps(table.data() + n * lanes); };

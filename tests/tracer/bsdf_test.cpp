@@ -2,6 +2,7 @@
 #include "tracer/bsdf.h"
 
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -135,6 +136,85 @@ TEST_CASE("nothing comes from or goes below the horizon") {
   CHECK(bsdf.evaluate({1, 0, 0}, {0, 0, 1}) == Rgb(0, 0, 0));
   CHECK(bsdf.evaluate({0, 0, 1}, {0, 0, -1}) == Rgb(0, 0, 0));
   CHECK(bsdf.sample({1, 0, 0}, {0.5F, 0.5F, 0.5F}).pdf == 0);
+}
+
+namespace {
+
+using Vec3d = Imath::V3d;
+
+// The formulas as they are printed, in double: Walter et al. 2007 (33), Heitz 2014 (72, 99).
+double printed_density(const Vec3d& normal, double alpha) {
+  const double tangent2 = (1 - normal.z * normal.z) / (normal.z * normal.z);
+  const double t = alpha * alpha + tangent2;
+  return alpha * alpha / (std::numbers::pi * std::pow(normal.z, 4) * t * t);
+}
+double printed_lambda(const Vec3d& d, double alpha) {
+  const double tangent2 = (1 - d.z * d.z) / (d.z * d.z);
+  return (std::sqrt(1 + alpha * alpha * tangent2) - 1) / 2;
+}
+
+// Mean of both polarisations, from vacuum onto a complex index.
+double printed_fresnel(double cosine, std::complex<double> index) {
+  const std::complex<double> inside = std::sqrt(1.0 - (1 - cosine * cosine) / (index * index));
+  const std::complex<double> s = (cosine - index * inside) / (cosine + index * inside);
+  const std::complex<double> p = (inside - index * cosine) / (inside + index * cosine);
+  return (std::norm(s) + std::norm(p)) / 2;
+}
+
+double printed_reflection(const Direction& light, const Direction& view, double alpha,
+                          std::complex<double> index) {
+  const Vec3d l = Vec3d(light).normalized();
+  const Vec3d v = Vec3d(view).normalized();
+  const Vec3d half_vector = (l + v).normalized();
+  return printed_fresnel(l ^ half_vector, index) * printed_density(half_vector, alpha) /
+         ((1 + printed_lambda(l, alpha) + printed_lambda(v, alpha)) * 4 * v.z);
+}
+
+}  // namespace
+
+TEST_CASE("reflection is what the formulas of GGX and Fresnel say") {
+  for (const float alpha : {0.01F, 0.1F, 0.35F, 1.0F}) {
+    const Bsdf coat = Bsdf::plastic(Rgb(0), 1.5F, alpha);  // nothing under it sends light back
+    for (const float view_angle : {0.0F, 30.0F, 70.0F, 89.0F}) {
+      for (int k = 0; k < 40; ++k) {
+        const Direction view = tilted(view_angle);
+        const Direction light = k == 0 ? Direction(-view.x, -view.y, view.z)
+                                       : from_spherical(radians(2.2 * k), 2.4 * k);
+        INFO("alpha " << alpha << ", view " << view_angle << ", light " << k);
+        CHECK(coat.evaluate(light, view).x ==
+              Approx(printed_reflection(light, view, alpha, 1.5)).epsilon(2e-3).margin(1e-7));
+      }
+    }
+  }
+  // Where squares of what is small would be less than any float.
+  for (const float alpha : {1e-4F, 1e-3F, 1.0F}) {
+    for (const float z : {1e-9F, 1e-7F, 2e-3F}) {
+      const Direction view(std::sqrt(1 - z * z), 0, z);
+      const Direction light(-view.x, 0, z);
+      const Bsdf coat = Bsdf::plastic(Rgb(0), 1.0001F, alpha);
+      INFO("alpha " << alpha << ", z " << z);
+      const float one = coat.evaluate(light, view).x;
+      CHECK(std::isfinite(one));
+      CHECK(one >= 0);
+      const RgbLanes many = coat.evaluate(
+          {all_lanes(light.x), all_lanes(light.y), all_lanes(light.z)}, coat.view_terms(view));
+      CHECK(many.r[7] == Approx(one).epsilon(1e-3));
+    }
+  }
+  // As good as a mirror, metal reflects but once.
+  const Bsdf gold = Bsdf::conductor(Rgb(0.14F, 0.37F, 1.44F), Rgb(3.98F, 2.38F, 1.6F), 0.005F);
+  for (const float angle : {0.0F, 30.0F, 60.0F, 80.0F, 88.0F}) {
+    const Direction view = tilted(angle);
+    const Direction light(-view.x, -view.y, view.z);
+    INFO("theta " << angle);
+    const Rgb value = gold.evaluate(light, view);
+    const auto printed = [&](std::complex<double> index) {
+      return Approx(printed_reflection(light, view, 0.005, index)).epsilon(2e-3);
+    };
+    CHECK(value.x == printed({0.14F, 3.98F}));
+    CHECK(value.y == printed({0.37F, 2.38F}));
+    CHECK(value.z == printed({1.44F, 1.6F}));
+  }
 }
 
 TEST_CASE("sixteen lights at once get what each gets alone") {
