@@ -18,8 +18,9 @@ constexpr std::uint32_t check_every = 256;
 // times: checks as rare as those above would add much noise where wrong answers are frequent, and
 // save little more (docs/acquisition.md).
 constexpr std::uint32_t check_open_every = 4;
-// Connections of later vertices that wait, so that packets are full, for those of more bounces; no
-// more than 8 MB, where the table knows little and paths are long.
+// Connections of later vertices wait for those of further bounces, so that packets are full; where
+// there are more than these (8 MB), as the table knows little and paths are long, they are traced
+// before the next bounce adds its own.
 constexpr std::size_t most_waiting = std::size_t{1} << 18;
 constexpr std::uint32_t most_samples = 64;      // of each texel in a wave
 constexpr std::uint32_t samples_a_check = 16;   // of each texel in a wave, where it may be the last

@@ -116,7 +116,8 @@ Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
   std::vector<Kernels> kernels;  // level 0 first
   std::vector<Kernels> parents;
   // Levels of the modes that the angles begin with: free angles start from these, too, so that they
-  // end no worse. Their last sweep is the free ones' business.
+  // end no worse. One sweep fewer, as the free ones sweep over what starts from these; so the
+  // default, one, costs them nothing.
   std::vector<Kernels> fixed_parents;
   FitOptions fixed = options;
   fixed.modes.free = false;
