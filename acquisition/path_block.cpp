@@ -14,10 +14,6 @@ namespace {
 
 // One certain answer in so many is checked.
 constexpr std::uint32_t check_every = 256;
-// The same of rays that are certain to meet nothing. What such a ray meets after all counts so many
-// times: checks as rare as those above would add much noise where wrong answers are frequent, and
-// save little more (docs/acquisition.md).
-constexpr std::uint32_t check_open_every = 4;
 // Connections of later vertices wait for those of further bounces, so that packets are full; where
 // there are more than these (8 MB), as the table knows little and paths are long, they are traced
 // before the next bounce adds its own.
@@ -398,9 +394,10 @@ float PathBlock::weight_of_hit(const Path& path, const Vertex& vertex, int bounc
   if (!tracer_.visibility().is_open(vertex.answers, path.direction)) return 1;
   ++statistics_.open_bounces;
   const std::uint64_t bits = hash_coordinates(keys_[path.texel], check_pair(bounce), path.sample);
-  if (static_cast<std::uint32_t>(bits) % check_open_every != 0) return 0;
+  const std::uint32_t every = tracer_.visibility().open_check_every();
+  if (static_cast<std::uint32_t>(bits) % every != 0) return 0;
   ++statistics_.open_checked;
-  return check_open_every;
+  return static_cast<float>(every);
 }
 
 void PathBlock::drop_settled(std::span<const double> error_scales, bool last) {

@@ -11,6 +11,7 @@
 
 #include "acquisition/packet_log.h"
 #include "acquisition/periodic_scene.h"
+#include "acquisition/texel_sums.h"
 #include "btf/direction.h"
 
 namespace weft {
@@ -36,7 +37,9 @@ class ShadowQueue {
   /// Of all lights.
   std::size_t size() const { return size_; }
 
-  /// Traces all, then forgets them.
+  /// Traces all, then forgets them. Sixteen rays from more than two texels go as incoherent ones,
+  /// whatever is asked for: Embree's coherent packets pay within a texel, and cost half as much
+  /// again beyond.
   /// @param log     gets a copy of every packet before it is traced; none where null.
   /// @param arrive  called with (light, connection, visible) for each, in order of lights, then of
   /// `add`.
@@ -53,7 +56,9 @@ class ShadowQueue {
         for (std::size_t i = 0; i < count; ++i) packet.set(i, queue[first + i].origin, lights[l]);
         const auto active = static_cast<std::uint16_t>((1U << count) - 1U);
         if (log != nullptr) log->add(packet, active, coherence);
-        traced_on += scene.occluded(packet, active, coherence);
+        const bool near =
+            queue[first + count - 1].slot - queue[first].slot < TexelSums::most_groups;
+        traced_on += scene.occluded(packet, active, near ? coherence : Coherence::incoherent);
         for (std::size_t i = 0; i < count; ++i) arrive(l, queue[first + i], !(packet.tfar[i] < 0));
       }
       queue.clear();

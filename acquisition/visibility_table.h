@@ -8,7 +8,8 @@
 // `PathBlock`, which checks one in 256.
 //
 // It answers for rays between the lights, too: from where all lights around a direction are seen,
-// a ray that way most likely meets nothing. `PathBlock` checks one in four of these.
+// a ray that way most likely meets nothing. `PathBlock` checks one in four of these, or, where a
+// trial of such rays met nothing at all, one in sixteen.
 #pragma once
 
 #include <cstdint>
@@ -56,6 +57,9 @@ class VisibilityTable {
     }
     return !around.empty();
   }
+  /// Of the rays that `is_open` tells of, one in so many is to be traced. What it meets after all
+  /// counts so many times, which adds noise where that is not very rare: there, more are traced.
+  std::uint32_t open_check_every() const { return open_check_every_; }
 
   /// What asking took.
   std::int64_t rays() const { return rays_; }
@@ -75,12 +79,15 @@ class VisibilityTable {
   // Lays the answers of cells that are not cut finer, and of the parts of those that are.
   void lay(const std::vector<Answer>& answers, std::span<const std::uint32_t> cut_cells,
            const std::vector<Answer>& fine_answers);
+  // Decides how often rays that are open are traced.
+  void try_open(const std::vector<Facet>& facets, const PeriodicScene& scene);
 
   std::size_t groups_;
   SurroundingLights surrounding_;
   FacetCells cells_;
   std::vector<Rows> rows_;       // a cell
   std::vector<Answer> answers_;  // [row][group]; the last row knows nothing
+  std::uint32_t open_check_every_ = 1;
   std::int64_t rays_ = 0;
 };
 

@@ -174,26 +174,38 @@ void BtfWriter::write_view(std::size_t view, const ViewData& data) {
   write_view_file(view_path(view), file, header_.views[view], header_.lights.directions(), data);
 }
 
+namespace {
+
+std::vector<std::size_t> absent_views(const fs::path& folder, const BtfHeader& header) {
+  std::vector<std::size_t> absent;
+  for (std::size_t v = 0; v < header.views.size(); ++v) {
+    if (!fs::exists(folder / view_file_name(v))) absent.push_back(v);
+  }
+  return absent;
+}
+
+}  // namespace
+
 std::vector<std::size_t> missing_views(const fs::path& folder, const BtfHeader& header) {
   check_place(folder);
   if (fs::is_directory(folder)) check_views(folder, header);
-  std::vector<std::size_t> missing;
-  for (std::size_t v = 0; v < header.views.size(); ++v) {
-    if (!fs::exists(folder / view_file_name(v))) missing.push_back(v);
-  }
-  return missing;
+  return absent_views(folder, header);
 }
 
 void finish_btf(const fs::path& folder, const BtfHeader& header) {
-  const std::vector<std::size_t> missing = missing_views(folder, header);
-  if (!missing.empty()) {
-    throw bad_input(folder.string(), "has no " + view_file_name(missing.front()) + " yet");
+  check_place(folder);
+  const std::vector<std::size_t> absent = absent_views(folder, header);
+  if (!absent.empty()) {
+    throw bad_input(folder.string(), "has no " + view_file_name(absent.front()) + " yet");
   }
   std::vector<std::vector<float>> errors(header.views.size());
   std::vector<std::string> checksums(header.views.size());
   for_each_in_parallel(header.views.size(), [&](std::size_t v) {
     const fs::path path = folder / view_file_name(v);
-    errors[v] = read_standard_errors(path);
+    ViewNotes notes = read_view_notes(path);
+    if (notes.provenance != header.provenance)
+      throw other_settings(folder, view_file_name(v), notes.provenance, header);
+    errors[v] = std::move(notes.standard_errors);
     checksums[v] = file_checksum(path);
   });
   Json files = Json::object();

@@ -196,15 +196,15 @@ ViewFileHeader read_view_header(const fs::path& path) {
   return header;
 }
 
-std::vector<float> read_standard_errors(const fs::path& path) {
+ViewNotes read_view_notes(const fs::path& path) {
   const Imf::MultiPartInputFile file = open_view(path);
-  std::vector<float> errors;
+  ViewNotes notes{.provenance = attribute(file.header(0), "weftProvenance"), .standard_errors = {}};
   for (int l = 0; l < file.parts(); ++l) {
     const auto* value = file.header(l).findTypedAttribute<Imf::FloatAttribute>("standardError");
     if (value == nullptr) break;
-    errors.push_back(value->value());
+    notes.standard_errors.push_back(value->value());
   }
-  return errors;
+  return notes;
 }
 
 namespace {

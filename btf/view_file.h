@@ -36,8 +36,12 @@ void write_view_file(const std::filesystem::path& path, const ViewFileHeader& he
 /// @throws Error  naming the file: missing, truncated, not such a file.
 ViewFileHeader read_view_header(const std::filesystem::path& path);
 
-/// Standard errors of the lights' tile means; empty where the file has none.
-std::vector<float> read_standard_errors(const std::filesystem::path& path);
+/// What a view's file tells beside its texels.
+struct ViewNotes {
+  std::string provenance;
+  std::vector<float> standard_errors;  ///< of the lights' tile means; empty where it has none
+};
+ViewNotes read_view_notes(const std::filesystem::path& path);
 
 /// Standard errors of the values, as they lie in `read_view_values`; empty where the file has none.
 std::vector<float> read_texel_errors(const std::filesystem::path& path, int width, int height,

@@ -155,14 +155,14 @@ TEST_CASE("the variance part and coverage survive the way to disk and back") {
     expect_near(read_view_values(path, width, height, 3), values);
     expect_near(read_texel_errors(path, width, height, 3), errors);
     expect_near(read_coverage(path, width, height), coverage);
-    CHECK(read_standard_errors(path) == pair_errors);
+    CHECK(read_view_notes(path).standard_errors == pair_errors);
   }
   const auto plain = folder.path / "plain.exr";
   write_view_file(plain, {width, height, PixelType::half, "{}"}, {0, 0, 1}, lights,
                   {.values = values});
   CHECK(read_texel_errors(plain, width, height, 3).empty());
   CHECK(read_coverage(plain, width, height).empty());
-  CHECK(read_standard_errors(plain).empty());
+  CHECK(read_view_notes(plain).standard_errors.empty());
 }
 
 TEST_CASE("coverage is the share of a texel's rays that hit above the cut") {
@@ -234,7 +234,7 @@ TEST_CASE("a dataset with parts for errors and coverage reads as the one without
   CHECK(corrupted_files(folder.path / "full.btf").empty());
   CHECK(read_texel_errors(folder.path / "plain.btf/view_001.exr", 6, 5, 4).empty());
   const auto errors = read_texel_errors(folder.path / "full.btf/view_001.exr", 6, 5, 4);
-  const auto pairs = read_standard_errors(folder.path / "full.btf/view_001.exr");
+  const auto pairs = read_view_notes(folder.path / "full.btf/view_001.exr").standard_errors;
   REQUIRE(errors.size() == 3 * 4 * 6 * 5);
   REQUIRE(pairs.size() == 4);
   // Texels are independent: a pair's variance is the sum of theirs (here of RGB, which vary

@@ -85,6 +85,13 @@ Mesostructure roofs() {
   return test::structure(mesh, {Bsdf::lambert(Rgb(1))}, 0.3F);
 }
 
+// Sixteen lights all around.
+std::vector<Direction> ring_at_30_degrees() {
+  std::vector<Direction> lights;
+  for (int i = 0; i < 16; ++i) lights.push_back(from_spherical(radians(30.0), radians(22.5 * i)));
+  return lights;
+}
+
 /// @param views  of the dataset: the more, the more rays make its table.
 ViewTracer tracer_of(const Mesostructure& structure, const TraceSettings& settings, bool table,
                      int views = 100'000) {
@@ -346,10 +353,8 @@ TEST_CASE("where the table is often wrong, the mean is right all the same", "[sl
 }
 
 TEST_CASE("where rays to the open meet roofs between all lights, the mean is right all the same") {
-  // Sixteen lights all around at 30 degrees are seen from all of the ground, and from beneath small
-  // roofs hide what is between them.
-  std::vector<Direction> lights;
-  for (int i = 0; i < 16; ++i) lights.push_back(from_spherical(radians(30.0), radians(22.5 * i)));
+  // They are seen from all of the ground, and from beneath small roofs hide what is between them.
+  const std::vector<Direction> lights = ring_at_30_degrees();
   const TraceSettings settings{
       .width = 16, .height = 16, .spp = 1024, .max_bounces = 3, .views = 1000, .seed = 5};
   const Mean result = compare_means(roofs(), lights, settings, from_spherical(0.9, 0.3));
@@ -366,18 +371,31 @@ TEST_CASE("where rays to the open meet roofs between all lights, the mean is rig
   CHECK(statistics::t_test(result.differences, 0) > 1e-3);
 }
 
+TEST_CASE("rays to the open are traced more often where some meet something after all") {
+  const auto every = [](const Mesostructure& structure, const std::vector<Direction>& lights) {
+    const TraceSettings settings{.width = 32, .height = 32, .spp = 64, .views = 6561};
+    return ViewTracer(structure, lights, settings).visibility().open_check_every();
+  };
+  CHECK(every(test::checker(64), named_directions("ubo81")) == 16);
+  CHECK(every(test::rings(128, 16), named_directions("ubo81")) == 16);
+  CHECK(every(roofs(), ring_at_30_degrees()) == 4);
+  CHECK(every(wires(), named_directions("ubo81")) == 4);
+  // Too few lights to say which rays are open, and so nothing to count.
+  CHECK(every(test::checker(64), {{0, 0, 1}}) == 4);
+}
+
 TEST_CASE("rays that the table takes to be open hardly ever meet anything") {
   const auto rate_of = [](const Mesostructure& structure) {
     const TraceSettings settings{.width = 32, .height = 32, .spp = 64, .max_bounces = 2, .seed = 1};
-    const TracedView traced =
-        tracer_of(structure, settings, true).trace(from_spherical(0.8, 2.0), 3);
-    const TraceStatistics& s = traced.statistics;
+    const ViewTracer tracer = tracer_of(structure, settings, true);
+    const TraceStatistics s = tracer.trace(from_spherical(0.8, 2.0), 3).statistics;
     const auto asked = static_cast<double>(s.bounce_rays + s.open_bounces - s.open_checked);
     INFO(s.open_bounces << " of " << asked << " open, " << s.open_checked << " traced, "
                         << s.open_wrong << " of them met something");
     CHECK(static_cast<double>(s.open_bounces) > 0.25 * asked);
-    CHECK(static_cast<double>(s.open_checked) > 0.9 / 4 * static_cast<double>(s.open_bounces));
-    CHECK(static_cast<double>(s.open_checked) < 1.1 / 4 * static_cast<double>(s.open_bounces));
+    const double every = tracer.visibility().open_check_every();
+    CHECK(static_cast<double>(s.open_checked) > 0.9 / every * static_cast<double>(s.open_bounces));
+    CHECK(static_cast<double>(s.open_checked) < 1.1 / every * static_cast<double>(s.open_bounces));
     CHECK(static_cast<double>(s.open_wrong) < 5e-3 * static_cast<double>(s.open_checked));
   };
   rate_of(test::checker(64));

@@ -75,7 +75,7 @@ TEST_CASE("acquire --validate --variance --alpha writes what the file formats sa
     const fs::path file = btf / "offgrid" / pair["file"].get<std::string>();
     const auto values = weft::read_view_values(file, 6, 4, 1);
     CHECK(weft::read_texel_errors(file, 6, 4, 1).size() == values.size());
-    CHECK(weft::read_standard_errors(file).size() == 1);
+    CHECK(weft::read_view_notes(file).standard_errors.size() == 1);
     CHECK(weft::read_view_header(file).pixel_type == weft::PixelType::float32);
     const double cosine = std::cos(pair["light"]["theta"].get<double>() * std::numbers::pi / 180);
     for (std::size_t i = 0; i < values.size(); ++i) {
