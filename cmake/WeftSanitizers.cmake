@@ -4,9 +4,10 @@
 add_library(weft_program INTERFACE)
 target_link_libraries(weft_program INTERFACE weft_compiler)
 if(WEFT_SANITIZE MATCHES "thread")
-  add_library(weft_tbb_order OBJECT ${PROJECT_SOURCE_DIR}/tests/sanitizers/tbb_order.cpp)
-  target_link_libraries(weft_tbb_order PRIVATE weft_compiler TBB::tbb)
-  target_sources(weft_program INTERFACE $<TARGET_OBJECTS:weft_tbb_order>)
+  add_library(weft_thread_order OBJECT ${PROJECT_SOURCE_DIR}/tests/sanitizers/tbb_order.cpp
+    ${PROJECT_SOURCE_DIR}/tests/sanitizers/embree_threads.cpp)
+  target_link_libraries(weft_thread_order PRIVATE weft_compiler TBB::tbb)
+  target_sources(weft_program INTERFACE $<TARGET_OBJECTS:weft_thread_order>)
 endif()
 
 set(WEFT_TEST_ENVIRONMENT "")

@@ -17,6 +17,7 @@ constexpr float inverse_pi = std::numbers::inv_pi_v<float>;
 constexpr int table_size = 4 * lanes;
 constexpr int table_samples = 2048;
 constexpr int fresnel_samples = 256;
+constexpr float least_loss = 1e-12F;  // where nothing is lost, for a quotient of nothing
 
 // `Number`: a float, or sixteen side by side.
 template <typename Number>
@@ -55,28 +56,30 @@ Number schlick(const Number& cosine, float f0) {
 
 }  // namespace
 
-// Nodes are even in the square root of the cosine: the albedo bends most at grazing angles.
-struct Bsdf::AlbedoTable {
-  std::array<float, table_size> albedo{};
-  float average = 0;
+// What the specular lobe keeps back of light from a direction: 1 - its directional albedo, summed
+// up as such, since what a mirror keeps back would drown in the roundings of the difference. Nodes
+// are even in the square root of the cosine: it bends most at grazing angles.
+struct Bsdf::LossTable {
+  std::array<float, table_size> loss{};
+  float average = 0;  // over directions, weighted by the cosine
 
   float at(float cosine) const {
     const float position = std::sqrt(std::clamp(cosine, 0.0F, 1.0F)) * (table_size - 1);
     const int i = std::min(static_cast<int>(position), table_size - 2);
     const float t = position - static_cast<float>(i);
-    return albedo[i] * (1 - t) + albedo[i + 1] * t;
+    return loss[i] * (1 - t) + loss[i + 1] * t;
   }
   FloatLanes at(const FloatLanes& cosine) const {
     const FloatLanes position = square_root(smaller(larger(cosine, 0.0F), 1.0F)) * (table_size - 1);
     const IntLanes i =
         __builtin_convertvector(smaller(position, table_size - 2), IntLanes);  // cuts off
     const FloatLanes t = position - __builtin_convertvector(i, FloatLanes);
-    return look_up(albedo, i) * (1 - t) + look_up(albedo, i + 1) * t;
+    return look_up(loss, i) * (1 - t) + look_up(loss, i + 1) * t;
   }
 
   /// @param fresnel  reflectance of a facet at a cosine.
   template <typename Fresnel>
-  AlbedoTable(float alpha, const Fresnel& fresnel) {
+  LossTable(float alpha, const Fresnel& fresnel) {
     for (int i = 0; i < table_size; ++i) {
       const float root = std::max(static_cast<float>(i) / (table_size - 1), 1e-3F);
       const float cosine = root * root;
@@ -87,13 +90,18 @@ struct Bsdf::AlbedoTable {
         const Vec3 half_vector = ggx::sample_visible_normal(view, alpha, u, v);
         const float across = view ^ half_vector;
         const Direction light = half_vector * (2 * across) - view;
-        if (light.z <= 0 || across <= 0) continue;
-        sum += fresnel(across) * ggx::masking_shadowing(light, view, alpha) /
-               ggx::masking(view, alpha);
+        if (light.z <= 0 || across <= 0) {
+          sum += 1;
+          continue;
+        }
+        // 1 - f (1 + lambda(view)) / (1 + lambda(light) + lambda(view))
+        const float hidden = ggx::lambda(light, alpha);
+        const float f = fresnel(across);
+        sum += 1 - f + f * hidden / (1 + hidden + ggx::lambda(view, alpha));
       }
-      albedo[i] = static_cast<float>(sum / table_samples);
+      loss[i] = static_cast<float>(sum / table_samples);
     }
-    // 2 * integral of albedo(c) c dc
+    // 2 * integral of loss(c) c dc
     constexpr int steps = 1024;
     double sum = 0;
     for (int i = 0; i < steps; ++i) {
@@ -114,7 +122,7 @@ namespace {
 
 // Part of the light that leaves after more than one reflection between facets, by colour: Kulla and
 // Conty, "Revisiting physically based shading at Imageworks", 2017.
-Rgb multiple_reflections(const std::function<Rgb(float)>& fresnel, float average_albedo) {
+Rgb multiple_reflections(const std::function<Rgb(float)>& fresnel, float average_loss) {
   Imath::V3d average(0, 0, 0);
   for (int i = 0; i < fresnel_samples; ++i) {
     const float cosine = (static_cast<float>(i) + 0.5F) / fresnel_samples;
@@ -122,7 +130,7 @@ Rgb multiple_reflections(const std::function<Rgb(float)>& fresnel, float average
     average += Imath::V3d(f.x, f.y, f.z) * (2.0 * cosine / fresnel_samples);
   }
   const auto term = [&](double f) {
-    return static_cast<float>(f * f * average_albedo / (1 - f * (1 - average_albedo)));
+    return static_cast<float>(f * f * (1 - average_loss) / (1 - f * average_loss));
   };
   return {term(average.x), term(average.y), term(average.z)};
 }
@@ -135,9 +143,9 @@ Bsdf Bsdf::conductor(const Rgb& eta, const Rgb& k, float alpha) {
   bsdf.eta_ = eta;
   bsdf.k_ = k;
   bsdf.alpha_ = alpha;
-  bsdf.table_ = std::make_shared<const AlbedoTable>(alpha, [](float) { return 1.0F; });
+  bsdf.loss_ = std::make_shared<const LossTable>(alpha, [](float) { return 1.0F; });
   bsdf.multiple_scattering_ =
-      multiple_reflections([&](float c) { return bsdf.fresnel(c); }, bsdf.table_->average);
+      multiple_reflections([&](float c) { return bsdf.fresnel(c); }, bsdf.loss_->average);
   return bsdf;
 }
 
@@ -147,9 +155,9 @@ Bsdf Bsdf::conductor_f0(const Rgb& f0, float alpha) {
   bsdf.f0_ = f0;
   bsdf.schlick_ = true;
   bsdf.alpha_ = alpha;
-  bsdf.table_ = std::make_shared<const AlbedoTable>(alpha, [](float) { return 1.0F; });
+  bsdf.loss_ = std::make_shared<const LossTable>(alpha, [](float) { return 1.0F; });
   bsdf.multiple_scattering_ =
-      multiple_reflections([&](float c) { return bsdf.fresnel(c); }, bsdf.table_->average);
+      multiple_reflections([&](float c) { return bsdf.fresnel(c); }, bsdf.loss_->average);
   return bsdf;
 }
 
@@ -159,7 +167,7 @@ Bsdf Bsdf::plastic(const Rgb& albedo, float ior, float alpha) {
   bsdf.albedo_ = albedo;
   bsdf.ior_ = ior;
   bsdf.alpha_ = alpha;
-  bsdf.table_ = std::make_shared<const AlbedoTable>(
+  bsdf.loss_ = std::make_shared<const LossTable>(
       alpha, [ior](float c) { return fresnel_dielectric(c, ior); });
   return bsdf;
 }
@@ -187,10 +195,10 @@ Rgb Bsdf::evaluate(const Direction& light, const Direction& view) const {
   const Vec3 sum = light + view;
   const float specular = ggx::reflection(light, sum, view, ggx::lambda(view, alpha_), alpha_);
   const Rgb single = fresnel(std::min(1.0F, 0.5F * sum.length())) * specular;
-  // What the specular lobe keeps back in either direction; 1 - average is 0 only where nothing is
+  // What the specular lobe keeps back in either direction; the average is 0 only where nothing is
   // lost.
-  const float lost = (1 - table_->at(light.z)) * (1 - table_->at(view.z)) * inverse_pi * light.z /
-                     std::max(1 - table_->average, 1e-6F);
+  const float lost = loss_->at(light.z) * loss_->at(view.z) * inverse_pi * light.z /
+                     std::max(loss_->average, least_loss);
   return single + (kind_ == Kind::conductor ? multiple_scattering_ : albedo_) * lost;
 }
 
@@ -199,7 +207,7 @@ Bsdf::ViewTerms Bsdf::view_terms(const Direction& view) const {
   if (kind_ == Kind::lambert || !(view.z > 0)) return terms;
   terms.lambda = ggx::lambda(view, alpha_);
   terms.lost = (kind_ == Kind::conductor ? multiple_scattering_ : albedo_) *
-               ((1 - table_->at(view.z)) * inverse_pi / std::max(1 - table_->average, 1e-6F));
+               (loss_->at(view.z) * inverse_pi / std::max(loss_->average, least_loss));
   return terms;
 }
 
@@ -210,7 +218,7 @@ RgbLanes Bsdf::evaluate_glossy(const Vec3Lanes& lights, const ViewTerms& terms) 
   const FloatLanes specular = ggx::reflection(lights, sum, terms.view, terms.lambda, alpha_);
   // Between light and half vector: the sum is twice as long as its cosine.
   const RgbLanes f = fresnel(smaller(0.5F * square_root(dot(sum, sum)), 1.0F));
-  const FloatLanes lost = (1 - table_->at(lights.z)) * lights.z;
+  const FloatLanes lost = loss_->at(lights.z) * lights.z;
   return {select(above, f.r * specular + lost * terms.lost.x, zero),
           select(above, f.g * specular + lost * terms.lost.y, zero),
           select(above, f.b * specular + lost * terms.lost.z, zero)};
@@ -218,10 +226,11 @@ RgbLanes Bsdf::evaluate_glossy(const Vec3Lanes& lights, const ViewTerms& terms) 
 
 namespace {
 
-// Chance of the specular lobe, given its albedo towards the viewer and the colour of the diffuse
-// one.
-float specular_chance(float specular, float diffuse_colour) {
-  const float diffuse = (1 - specular) * diffuse_colour;
+// Chance of the specular lobe, given what it keeps back from the viewer and the colour of the
+// diffuse one.
+float specular_chance(float loss, float diffuse_colour) {
+  const float specular = 1 - loss;
+  const float diffuse = loss * diffuse_colour;
   const float total = specular + diffuse;
   return total > 0 ? std::clamp(specular / total, 0.05F, 0.95F) : 1;
 }
@@ -236,7 +245,7 @@ float Bsdf::pdf(const Direction& light, const Direction& view) const {
   const float specular =
       ggx::density(half_vector, alpha_) * ggx::masking(view, alpha_) / (4 * view.z);
   const float chance = specular_chance(
-      table_->at(view.z), max_component(kind_ == Kind::conductor ? multiple_scattering_ : albedo_));
+      loss_->at(view.z), max_component(kind_ == Kind::conductor ? multiple_scattering_ : albedo_));
   return chance * specular + (1 - chance) * diffuse;
 }
 
@@ -247,7 +256,7 @@ Bsdf::Sample Bsdf::sample(const Direction& view, const std::array<float, 3>& u) 
     return {light, albedo_, light.z * inverse_pi};
   }
   const float chance = specular_chance(
-      table_->at(view.z), max_component(kind_ == Kind::conductor ? multiple_scattering_ : albedo_));
+      loss_->at(view.z), max_component(kind_ == Kind::conductor ? multiple_scattering_ : albedo_));
   Direction light;
   if (u[0] < chance) {
     const Vec3 half_vector = ggx::sample_visible_normal(view, alpha_, u[1], u[2]);

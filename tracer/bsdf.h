@@ -70,9 +70,9 @@ class Bsdf {
   bool schlick_ = false;
   float ior_ = 1.5F;
   float alpha_ = 1;
-  /// Directional albedo of the specular lobe against the cosine, and its cosine-weighted mean.
-  struct AlbedoTable;
-  std::shared_ptr<const AlbedoTable> table_;
+  /// What the specular lobe keeps back against the cosine, and the cosine-weighted mean of it.
+  struct LossTable;
+  std::shared_ptr<const LossTable> loss_;
   Rgb multiple_scattering_{0, 0, 0};
 
   RgbLanes evaluate_glossy(const Vec3Lanes& lights, const ViewTerms& terms) const;

@@ -24,10 +24,10 @@ inline auto density(const Vector& normal, float alpha) {
   return select(t > 0, a2 / (std::numbers::pi_v<float> * t * t), t * 0);
 }
 
-template <typename Vector>
-inline auto lambda(const Vector& d, float alpha) {
-  const auto tangent2 = (d.x * d.x + d.y * d.y) / (d.z * d.z);
-  return 0.5F * (square_root(1 + alpha * alpha * tangent2) - 1);
+/// In a form that keeps its digits where it is small, as for a mirror-like alpha.
+inline float lambda(const Direction& d, float alpha) {
+  const float a2s2 = alpha * alpha * (d.x * d.x + d.y * d.y);
+  return 0.5F * a2s2 / (d.z * (d.z + std::sqrt(d.z * d.z + a2s2)));
 }
 
 /// Share of facets that `d` sees.
@@ -35,14 +35,9 @@ inline float masking(const Direction& d, float alpha) {
   return 1 / (1 + lambda(d, alpha));
 }
 
-/// Share of facets that both see.
-inline float masking_shadowing(const Direction& light, const Direction& view, float alpha) {
-  return 1 / (1 + lambda(light, alpha) + lambda(view, alpha));
-}
-
-/// `density` of the half vector * `masking_shadowing` / (4 view.z), with few roots and divisions,
-/// as these are most of what lanes cost: what a mirror's facets send from `light` to `view`, times
-/// light.z. Only where both z > 0; of other lanes it is anything.
+/// `density` of the half vector / ((1 + lambda(light) + lambda(view)) 4 view.z), with few roots and
+/// divisions, as these are most of what lanes cost: what a mirror's facets send from `light` to
+/// `view`, times light.z. Only where both z > 0; of other lanes it is anything.
 /// @param sum          light + view: the half vector times its length.
 /// @param view_lambda  `lambda` of the view.
 template <typename Vector>
