@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -17,14 +18,16 @@ namespace weft {
 namespace {
 
 constexpr std::uint64_t trial_key = 0x4F50454E;  // for its random numbers
-enum Pair : std::uint64_t { place, direction };  // of random numbers of a ray
+// Pairs of random numbers of a ray.
+constexpr std::uint64_t trial_place = 0;
+constexpr std::uint64_t trial_direction = 1;
 
-std::array<float, 2> random(std::size_t ray, Pair pair) {
+std::array<float, 2> random_pair(std::size_t ray, std::uint64_t pair) {
   const std::uint64_t bits = hash_coordinates(trial_key, ray, pair);
   return {unit_float(bits), unit_float(bits << 32)};
 }
 
-// Of all facets up to each.
+// Entry f: the area of facets 0 to f together.
 std::vector<double> areas_up_to(const std::vector<Facet>& facets) {
   std::vector<double> areas;
   areas.reserve(facets.size());
@@ -45,7 +48,7 @@ OpenTrial operator+(const OpenTrial& a, const OpenTrial& b) {
 OpenTrial try_open_rays(const std::vector<Facet>& facets, const VisibilityTable& table,
                         const PeriodicScene& scene, std::size_t rays) {
   const std::vector<double> areas = areas_up_to(facets);
-  if (areas.empty() || !(areas.back() > 0)) return {};
+  if (areas.empty() || !(areas.back() > 0) || !std::isfinite(areas.back())) return {};
   const auto try_packet = [&](std::size_t first) {
     HitPacket packet{};
     unsigned open = 0;
@@ -55,14 +58,15 @@ OpenTrial try_open_rays(const std::vector<Facet>& facets, const VisibilityTable&
       const auto f =
           static_cast<std::uint32_t>(std::ranges::upper_bound(areas, at) - areas.begin());
       const Facet& facet = facets[f];
-      auto [u, v] = random(i, place);
+      auto [u, v] = random_pair(i, trial_place);
       if (u + v > 1) std::tie(u, v) = std::pair(1 - u, 1 - v);
-      const auto [a, b] = random(i, direction);
+      const auto [a, b] = random_pair(i, trial_direction);
       const Direction on = frame_around(facet.normal).to_world(cosine_direction(a, b));
       if (!table.is_open(table.at(f, u, v), on)) continue;
       packet.ray.set(i - first, ray_origin(facet.point(u, v), facet.normal), on);
       open |= 1U << (i - first);
     }
+    if (open == 0) return OpenTrial{};
     scene.intersect(packet, static_cast<std::uint16_t>(open), Coherence::incoherent);
     OpenTrial trial{.open = std::popcount(open), .met = 0};
     for (unsigned left = open; left != 0; left &= left - 1)

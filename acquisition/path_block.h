@@ -3,8 +3,8 @@
 // A wave holds some samples of all the block's texels. Its paths meet the surface, are connected to
 // every light at once, and go on together. Where the visibility table is certain, it
 // answers for the light; one such answer in 256 is traced all the same, and where it was wrong, the
-// difference is added 256 times: so the mean is that of tracing everything. The same goes, with 4,
-// for bounces that are certain to meet nothing.
+// difference is added 256 times: so the mean is that of tracing everything. The same goes for
+// bounces that are certain to meet nothing, of which one in 4 or 16 is traced.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ class ShadowQueue {
 
   struct Connection {
     Vec3 origin;
-    std::uint32_t slot;  ///< where the value belongs
+    std::uint32_t slot;  ///< where the value belongs: near ones are of near places
     Answer answer;
     float r, g, b;
   };
@@ -37,9 +37,9 @@ class ShadowQueue {
   /// Of all lights.
   std::size_t size() const { return size_; }
 
-  /// Traces all, then forgets them. Sixteen rays from more than two texels go as incoherent ones,
-  /// whatever is asked for: Embree's coherent packets pay within a texel, and cost half as much
-  /// again beyond.
+  /// Traces all, then forgets them. Sixteen rays whose slots are a texel's or more apart go as
+  /// incoherent ones, whatever is asked for: Embree's coherent packets pay within a texel, and cost
+  /// half as much again beyond.
   /// @param log     gets a copy of every packet before it is traced; none where null.
   /// @param arrive  called with (light, connection, visible) for each, in order of lights, then of
   /// `add`.

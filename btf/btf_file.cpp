@@ -176,12 +176,12 @@ void BtfWriter::write_view(std::size_t view, const ViewData& data) {
 
 namespace {
 
-std::vector<std::size_t> absent_views(const fs::path& folder, const BtfHeader& header) {
-  std::vector<std::size_t> absent;
+std::vector<std::size_t> views_without_file(const fs::path& folder, const BtfHeader& header) {
+  std::vector<std::size_t> missing;
   for (std::size_t v = 0; v < header.views.size(); ++v) {
-    if (!fs::exists(folder / view_file_name(v))) absent.push_back(v);
+    if (!fs::exists(folder / view_file_name(v))) missing.push_back(v);
   }
-  return absent;
+  return missing;
 }
 
 }  // namespace
@@ -189,14 +189,14 @@ std::vector<std::size_t> absent_views(const fs::path& folder, const BtfHeader& h
 std::vector<std::size_t> missing_views(const fs::path& folder, const BtfHeader& header) {
   check_place(folder);
   if (fs::is_directory(folder)) check_views(folder, header);
-  return absent_views(folder, header);
+  return views_without_file(folder, header);
 }
 
 void finish_btf(const fs::path& folder, const BtfHeader& header) {
   check_place(folder);
-  const std::vector<std::size_t> absent = absent_views(folder, header);
-  if (!absent.empty()) {
-    throw bad_input(folder.string(), "has no " + view_file_name(absent.front()) + " yet");
+  const std::vector<std::size_t> missing = views_without_file(folder, header);
+  if (!missing.empty()) {
+    throw bad_input(folder.string(), "has no " + view_file_name(missing.front()) + " yet");
   }
   std::vector<std::vector<float>> errors(header.views.size());
   std::vector<std::string> checksums(header.views.size());

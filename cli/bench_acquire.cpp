@@ -145,11 +145,13 @@ void bench_acquire(const BenchAcquireOptions& options, Session& session) {
                       100 * c->bias, 100 * c->rms_difference, 100 * c->standard_error));
     }
   }
-  for (const AcquisitionCost& cost : acquisition_costs(chosen.front().second, settings)) {
+  const std::vector<AcquisitionCost> costs = acquisition_costs(chosen.front().second, settings);
+  for (const AcquisitionCost& cost : costs) {
     session.measured["costs"][cost.size].push_back(
         {{"factor", cost.factor}, {"seconds", cost.seconds}});
     session.say(fmt::format("{:8} x {}: {:.3f} s", cost.size, cost.factor, cost.seconds));
   }
+  std::ranges::move(cost_bars(costs), std::back_inserter(bars));
   report_bars(bars, session);
   const Machine machine = this_machine();
   session.measured["processor"] = machine.processor;

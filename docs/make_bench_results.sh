@@ -7,7 +7,7 @@ docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bench=${1:?the JSON file of a bench}
 
 jq -r '
-  def round(n): . * pow(10; n) | floor / pow(10; n);
+  def round(n): . * pow(10; n) + 0.5 | floor / pow(10; n);
   def row: "| " + (map(tostring) | join(" | ")) + " |";
   . as $all | .structures as $s | ($s | keys_unsorted) as $names |
   "# Speed of acquisition",

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <span>
@@ -288,38 +289,78 @@ std::vector<Bar> acquisition_bars(const AcquisitionBench& b) {
   return bars;
 }
 
+namespace {
+
+constexpr std::array<int, 3> cost_factors = {1, 2, 4};
+constexpr int cost_runs = 5;
+
+struct CostRun {
+  ViewTracer tracer;
+  std::vector<Direction> views;
+  double seconds = std::numeric_limits<double>::infinity();  // the least so far
+};
+
+// `size` times `factor` a quarter of what the settings say, all others half of it.
+CostRun cost_run(const std::shared_ptr<const TraceableStructure>& structure,
+                 const AcquisitionSettings& settings, const std::string& size, int factor) {
+  const auto part = [&](const std::string& name, std::size_t whole) {
+    return std::max<std::size_t>(1, whole * (name == size ? factor : 2) / 4);
+  };
+  // In the middles of even steps, so that few are as steep on average as many.
+  const auto some_of = [](const std::vector<Direction>& all, std::size_t count) {
+    std::vector<Direction> some;
+    for (std::size_t i = 0; i < count; ++i)
+      some.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
+    return some;
+  };
+  const std::vector<Direction> views = named_directions(settings.views);
+  const std::vector<Direction> lights = named_directions(settings.lights);
+  TraceSettings trace = settings.trace;
+  trace.height = static_cast<int>(part("texels", static_cast<std::size_t>(trace.height)));
+  trace.spp = static_cast<int>(part("spp", static_cast<std::size_t>(trace.spp)));
+  trace.views = views.size();  // the table is made as for all of them
+  return {{structure, some_of(lights, part("lights", lights.size())), trace},
+          some_of(views, part("views", std::min<std::size_t>(views.size(), 32)))};
+}
+
+}  // namespace
+
 std::vector<AcquisitionCost> acquisition_costs(const Mesostructure& mesostructure,
                                                const AcquisitionSettings& settings) {
   const auto structure = std::make_shared<const TraceableStructure>(mesostructure);
-  const std::vector<Direction> views = named_directions(settings.views);
-  const std::vector<Direction> lights = named_directions(settings.lights);
   std::vector<AcquisitionCost> costs;
   for (const std::string size : {"texels", "spp", "views", "lights"}) {
-    for (const int factor : {1, 2, 4}) {
-      const auto part = [&](const std::string& name, std::size_t whole) {
-        return std::max<std::size_t>(1, whole * (name == size ? factor : 2) / 4);
-      };
-      TraceSettings trace = settings.trace;
-      trace.height = static_cast<int>(part("texels", static_cast<std::size_t>(trace.height)));
-      trace.spp = static_cast<int>(part("spp", static_cast<std::size_t>(trace.spp)));
-      // A few views at even steps; the table is made as for all of them.
-      trace.views = views.size();
-      const std::size_t some = part("views", std::min<std::size_t>(views.size(), 32));
-      std::vector<Direction> fewer;
-      const std::size_t count = part("lights", lights.size());
-      for (std::size_t l = 0; l < count; ++l) fewer.push_back(lights[l * lights.size() / count]);
-      const ViewTracer tracer(structure, fewer, trace);
-      double seconds = std::numeric_limits<double>::infinity();
-      for (int run = 0; run < 3; ++run) {
-        seconds = std::min(seconds, seconds_of([&] {
-                             for (std::size_t v = 0; v < some; ++v)
-                               tracer.trace(views[v * views.size() / some], v);
-                           }));
+    std::vector<CostRun> runs;
+    for (const int factor : cost_factors)
+      runs.push_back(cost_run(structure, settings, size, factor));
+    // In turn, so that the machine's slower moments fall on all.
+    for (int i = 0; i < cost_runs; ++i) {
+      for (CostRun& run : runs) {
+        run.seconds = std::min(run.seconds, seconds_of([&] {
+                                 for (std::size_t v = 0; v < run.views.size(); ++v)
+                                   run.tracer.trace(run.views[v], v);
+                               }));
       }
-      costs.push_back({size, factor, seconds});
     }
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      costs.push_back({size, cost_factors[i], runs[i].seconds});
   }
   return costs;
+}
+
+std::vector<Bar> cost_bars(const std::vector<AcquisitionCost>& costs) {
+  constexpr double linear = 4.2;  // of four times as much; a twentieth for the clock
+  constexpr double clearly_less = 3;
+  std::vector<Bar> bars;
+  double one = 0;
+  for (const AcquisitionCost& cost : costs) {
+    if (cost.factor == cost_factors.front()) one = cost.seconds;
+    if (cost.factor == cost_factors.back()) {
+      bars.push_back({cost.size + " x 4: time", "times", cost.seconds / one,
+                      cost.size == "lights" ? clearly_less : linear});
+    }
+  }
+  return bars;
 }
 
 }  // namespace weft

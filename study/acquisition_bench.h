@@ -62,11 +62,15 @@ std::vector<Bar> acquisition_bars(const AcquisitionBench& bench);
 struct AcquisitionCost {
   std::string size;  ///< texels (a side's square), spp, views or lights
   int factor = 1;
-  double seconds = 0;  ///< the least of three runs; without the visibility table's making
+  double seconds = 0;  ///< the least of five runs; without the visibility table's making
 };
 
 /// How the time grows with each size: 1, 2 and 4 times a quarter of what `settings` say.
 std::vector<AcquisitionCost> acquisition_costs(const Mesostructure& mesostructure,
                                                const AcquisitionSettings& settings);
+
+/// Time grows no faster than linearly, and clearly slower with lights.
+/// @param costs  as `acquisition_costs` returns them.
+std::vector<Bar> cost_bars(const std::vector<AcquisitionCost>& costs);
 
 }  // namespace weft

@@ -84,6 +84,7 @@ struct Bsdf::LossTable {
       const float root = std::max(static_cast<float>(i) / (table_size - 1), 1e-3F);
       const float cosine = root * root;
       const Direction view(std::sqrt(std::max(0.0F, 1 - cosine * cosine)), 0, cosine);
+      const float view_lambda = ggx::lambda(view, alpha);
       double sum = 0;
       for (std::uint32_t s = 0; s < table_samples; ++s) {
         const auto [u, v] = sobol_point(s, 0);
@@ -97,16 +98,19 @@ struct Bsdf::LossTable {
         // 1 - f (1 + lambda(view)) / (1 + lambda(light) + lambda(view))
         const float hidden = ggx::lambda(light, alpha);
         const float f = fresnel(across);
-        sum += 1 - f + f * hidden / (1 + hidden + ggx::lambda(view, alpha));
+        sum += 1 - f + f * hidden / (1 + hidden + view_lambda);
       }
       loss[i] = static_cast<float>(sum / table_samples);
     }
-    // 2 * integral of loss(c) c dc
-    constexpr int steps = 1024;
+    // 2 * integral of loss(c) c dc = 4 * integral of loss(r) r^3 dr, r the root of c: exact, as the
+    // loss is linear in r between nodes.
     double sum = 0;
-    for (int i = 0; i < steps; ++i) {
-      const float cosine = (static_cast<float>(i) + 0.5F) / steps;
-      sum += 2.0 * at(cosine) * cosine / steps;
+    for (int i = 0; i + 1 < table_size; ++i) {
+      const double a = static_cast<double>(i) / (table_size - 1);
+      const double b = static_cast<double>(i + 1) / (table_size - 1);
+      const double slope = (static_cast<double>(loss[i + 1]) - loss[i]) / (b - a);
+      sum += (loss[i] - slope * a) * (std::pow(b, 4) - std::pow(a, 4)) +
+             slope * 0.8 * (std::pow(b, 5) - std::pow(a, 5));
     }
     average = static_cast<float>(sum);
   }

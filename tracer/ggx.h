@@ -24,7 +24,8 @@ inline auto density(const Vector& normal, float alpha) {
   return select(t > 0, a2 / (std::numbers::pi_v<float> * t * t), t * 0);
 }
 
-/// In a form that keeps its digits where it is small, as for a mirror-like alpha.
+/// Smith's Lambda of the distribution (Heitz 2014, eq. 72), in a form that keeps its digits where
+/// it is small, as for a mirror-like alpha.
 inline float lambda(const Direction& d, float alpha) {
   const float a2s2 = alpha * alpha * (d.x * d.x + d.y * d.y);
   return 0.5F * a2s2 / (d.z * (d.z + std::sqrt(d.z * d.z + a2s2)));

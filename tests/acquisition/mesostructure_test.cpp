@@ -223,6 +223,17 @@ TEST_CASE("a height field has the image's first row near v = 1, and wraps") {
              Contains("h.exr") && Contains("pixel (2, 1)"));
 }
 
+TEST_CASE("bytes of a height field's image are heights as they stand, not colours") {
+  const TemporaryFolder folder;
+  Image image(2, 2, 3);
+  for (int i = 0; i < 4; ++i) image.set_rgb(i % 2, i / 2, Rgb(128.0F / 255));
+  write_image(folder.path / "h.png", image, Encoding::linear);
+  const auto file =
+      write_file(folder, "h.toml", "type = 'heightfield'\nfile = 'h.png'\nheight = 0.5\n");
+  for (const Vec3& p : read_mesostructure(file).mesh.positions)
+    CHECK(p.z == Approx(0.5 * 128 / 255).epsilon(1e-6));
+}
+
 TEST_CASE("a height field and the same field as an OBJ are the same mesh") {
   const TemporaryFolder folder;
   const int width = 8;

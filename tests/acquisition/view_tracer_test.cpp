@@ -87,9 +87,15 @@ TEST_CASE("a white structure sends back all light", "[heavy]") {
   // %.
   const HemisphereSampling lights(named_directions("fibonacci:1024"));
   const std::vector<double> solid_angles = lights.solid_angles();
-  const ViewTracer tracer(
-      painted(test::checker(128), Rgb(1)), {lights.directions().begin(), lights.directions().end()},
-      {.width = 32, .height = 32, .spp = 16, .max_bounces = TraceSettings::unlimited, .seed = 2});
+  const ViewTracer tracer(painted(test::checker(128), Rgb(1)),
+                          {lights.directions().begin(), lights.directions().end()},
+                          {.width = 32,
+                           .height = 32,
+                           .spp = 16,
+                           .max_bounces = TraceSettings::unlimited,
+                           .views = 1000,
+                           .seed = 2});
+  REQUIRE(tracer.visibility().rays() > 0);
   for (const double theta : {0.0, 60.0, 89.0}) {
     CHECK(albedo_towards(tracer, solid_angles, from_spherical(radians(theta), 1.0), 5) ==
           Approx(1).epsilon(0.01));
@@ -111,7 +117,13 @@ TEST_CASE("a hemispherical pit sends back rho / (2 - rho) of what enters it", "[
     const ViewTracer tracer(
         test::structure(test::pit(radius, n), {Bsdf::lambert(Rgb(rho)), Bsdf::lambert(Rgb(0))}, 0),
         lights,
-        {.width = 16, .height = 16, .spp = 8, .max_bounces = TraceSettings::unlimited, .seed = 3});
+        {.width = 16,
+         .height = 16,
+         .spp = 8,
+         .max_bounces = TraceSettings::unlimited,
+         .views = 1000,
+         .seed = 3});
+    REQUIRE(tracer.visibility().rays() > 0);
     std::vector<double> sent(lights.size());
     for (std::size_t v = 0; v < views.size(); ++v) {
       const TracedView traced = tracer.trace(views[v], v);

@@ -353,7 +353,8 @@ TEST_CASE("where the table is often wrong, the mean is right all the same", "[sl
 }
 
 TEST_CASE("where rays to the open meet roofs between all lights, the mean is right all the same") {
-  // They are seen from all of the ground, and from beneath small roofs hide what is between them.
+  // The lights are seen from all of the ground, and from beneath small roofs hide what is between
+  // them.
   const std::vector<Direction> lights = ring_at_30_degrees();
   const TraceSettings settings{
       .width = 16, .height = 16, .spp = 1024, .max_bounces = 3, .views = 1000, .seed = 5};
@@ -373,13 +374,12 @@ TEST_CASE("where rays to the open meet roofs between all lights, the mean is rig
 
 TEST_CASE("rays to the open are traced more often where some meet something after all") {
   const auto every = [](const Mesostructure& structure, const std::vector<Direction>& lights) {
-    const TraceSettings settings{.width = 32, .height = 32, .spp = 64, .views = 6561};
+    const TraceSettings settings{.width = 32, .height = 32, .spp = 16, .views = 81};
     return ViewTracer(structure, lights, settings).visibility().open_check_every();
   };
   CHECK(every(test::checker(64), named_directions("ubo81")) == 16);
   CHECK(every(test::rings(128, 16), named_directions("ubo81")) == 16);
   CHECK(every(roofs(), ring_at_30_degrees()) == 4);
-  CHECK(every(wires(), named_directions("ubo81")) == 4);
   // Too few lights to say which rays are open, and so nothing to count.
   CHECK(every(test::checker(64), {{0, 0, 1}}) == 4);
 }

@@ -96,9 +96,9 @@ TEST_CASE("acquire refuses bad mesostructures") {
   mistakes.refused(acquire("half.toml"), {"half.toml:2"});
   mistakes.refused(acquire("unknown.toml"), {"unknown.toml:2", "hight", "height"});
   mistakes.refused(acquire("type.toml"), {"type.toml:1", "chequer", "checker"});
-  mistakes.refused(acquire("nan.toml"), {"nan.exr", "nan"});
-  mistakes.refused(acquire("truncated.toml"), {"truncated.exr"});
-  mistakes.refused(acquire("faceless.toml"), {"faceless.obj", "face"});
+  mistakes.refused(acquire("nan.toml"), {"nan.exr", "height of pixel"});
+  mistakes.refused(acquire("truncated.toml"), {"truncated.exr", "cannot be read"});
+  mistakes.refused(acquire("faceless.toml"), {"faceless.obj", "no faces"});
   mistakes.refused(acquire("thin.toml"), {"thin.obj", "no triangle with an area"});
   mistakes.refused(acquire("fileless.toml"), {"fileless.toml:2:1", "nothing.obj"});
   mistakes.refused(acquire("imageless.toml"), {"imageless.toml:2:1", "none.png"});

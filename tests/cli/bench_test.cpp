@@ -141,6 +141,11 @@ TEST_CASE("bench acquire tells speeds, costs and what they are held to, and leav
   for (const auto& [size, rows] : json["costs"].items()) {
     REQUIRE(rows.size() == 3);
     for (const Json& row : rows) CHECK(row["seconds"].get<double>() > 0);
+    const double growth = rows[2]["seconds"].get<double>() / rows[0]["seconds"].get<double>();
+    CHECK(std::ranges::count_if(json["bars"], [&](const Json& bar) {
+            return bar["what"] == size + " x 4: time" && bar["value"].get<double>() == growth &&
+                   bar["below"] == (size == "lights" ? 3.0 : 4.2);
+          }) == 1);
   }
 }
 

@@ -8,8 +8,9 @@
 
 namespace weft::test {
 
-/// B in 1/sr of each texel (green), row by row: as many real copies of the tile as rays towards
-/// this view and light can reach, on a regular grid of `fine` x `fine` points a texel.
+/// B in 1/sr of each texel, row by row, of a structure of triangles: it is laid out in as many
+/// copies as rays towards this view and light can reach, and asked on a regular grid of `fine` x
+/// `fine` points a texel.
 /// @param albedo  of each material, Lambert.
 /// @param size    texels a side.
 std::vector<double> direct_light(const Mesostructure& structure, const std::vector<double>& albedo,
