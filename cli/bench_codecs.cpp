@@ -41,6 +41,7 @@ struct BenchCodecsOptions {
   std::string variant_directions = "regular:16x8";
   bool comparisons = true;
   int comparison_texels = 16;
+  int comparison_spp = 1024;
 };
 
 /// What lobes and SRBF are compared with others on.
@@ -79,16 +80,24 @@ fs::path tissue_or_named(const BenchCodecsOptions& options) {
                                        : fs::path(options.mesostructure);
 }
 
-fs::path traced(const fs::path& file, int texels, const std::string& directions,
-                const BenchCodecsOptions& options, const Session& session) {
+/// A dataset to trace.
+struct Data {
+  fs::path mesostructure;
+  std::string directions;
+  int texels;  ///< a side of the tile
+  int spp;
+};
+
+fs::path traced(const Data& data, const Session& session) {
   AcquisitionSettings settings;
-  settings.trace.width = settings.trace.height = texels;
-  settings.trace.spp = options.spp;
+  settings.trace.width = settings.trace.height = data.texels;
+  settings.trace.spp = data.spp;
   settings.trace.seed = session.seed;
-  settings.views = settings.lights = directions;
-  Progress progress(fmt::format("acquire {} {}", file.stem().string(), directions),
-                    session.quiet || session.json);
-  return cached_dataset(cache_folder(), read_mesostructure(file), settings, progress);
+  settings.views = settings.lights = data.directions;
+  Progress progress(
+      fmt::format("acquire {} {}", data.mesostructure.stem().string(), data.directions),
+      session.quiet || session.json);
+  return cached_dataset(cache_folder(), read_mesostructure(data.mesostructure), settings, progress);
 }
 
 /// @param described  gets what the data are.
@@ -175,8 +184,9 @@ CodecBenches bench_variants(const std::vector<CodecVariant>& variants,
 CodecBenches bench_factors(const std::vector<CodecVariant>& variants,
                            const BenchCodecsOptions& options, Session& session) {
   const fs::path data = options.variant_data.empty()
-                            ? traced(tissue_or_named(options), options.texels,
-                                     options.variant_directions, options, session)
+                            ? traced({tissue_or_named(options), options.variant_directions,
+                                      options.texels, options.spp},
+                                     session)
                             : fs::path(options.variant_data);
   const auto btf = read_data(data, session.measured["variant_dataset"]);
   say_head(fmt::format("\n{} x {} directions", btf->views().size(), btf->lights().size()), session);
@@ -188,6 +198,7 @@ struct ComparedFits {
   const char* name;  ///< in the JSON
   std::vector<CodecVariant> variants;
   int texels;  ///< a side of the tile
+  int spp;
 };
 
 /// The bars of codecs against each other, on several structures.
@@ -196,8 +207,9 @@ std::vector<Bar> bench_comparisons(const ComparedFits& compared, const BenchCode
   std::vector<Bar> bars;
   for (const std::string structure : compared_structures) {
     Json& measured = session.measured["comparisons"][structure][compared.name];
-    const auto btf = read_data(traced(structure_file(structure, options), compared.texels,
-                                      options.directions, options, session),
+    const auto btf = read_data(traced({structure_file(structure, options), options.directions,
+                                       compared.texels, compared.spp},
+                                      session),
                                measured["dataset"]);
     say_head(fmt::format("\n{}, {} x {} texels", structure, btf->width(), btf->height()), session);
     const CodecBenches fits = bench_variants(compared.variants, btf, measured["codecs"], session);
@@ -217,8 +229,9 @@ void bench_codecs(const BenchCodecsOptions& options, Session& session) {
   if (!options.mesostructure.empty()) read_mesostructure(options.mesostructure);
   std::vector<ComparedFits> comparisons;
   if (options.comparisons) {
-    comparisons = {{"models", of_chosen(compared_models(), chosen), options.texels},
-                   {"kernels", of_chosen(compared_kernels(), chosen), options.comparison_texels}};
+    comparisons = {{"models", of_chosen(compared_models(), chosen), options.texels, options.spp},
+                   {"kernels", of_chosen(compared_kernels(), chosen), options.comparison_texels,
+                    options.comparison_spp}};
     std::erase_if(comparisons, [](const ComparedFits& c) { return c.variants.empty(); });
   }
   for (const std::string structure : compared_structures) {
@@ -226,9 +239,11 @@ void bench_codecs(const BenchCodecsOptions& options, Session& session) {
   }
 
   session.measured["codecs"] = Json::object();  // first in what is printed
-  const fs::path data = options.data.empty() ? traced(tissue_or_named(options), options.texels,
-                                                      options.directions, options, session)
-                                             : fs::path(options.data);
+  const fs::path data =
+      options.data.empty()
+          ? traced({tissue_or_named(options), options.directions, options.texels, options.spp},
+                   session)
+          : fs::path(options.data);
   const CodecBenches codec_benches = bench_registry(chosen, data, session);
   CodecBenches factor_benches;
   const std::vector<CodecVariant> factors = of_chosen(factor_variants(), chosen);
@@ -279,12 +294,18 @@ void add_bench_codecs(CLI::App& bench, Session& session) {
       ->capture_default_str();
   codecs->add_flag("--comparisons,!--no-comparisons", options->comparisons,
                    "Whether to compare lobes, PTM, Lafortune models and SRBF by its variables (for "
-                   "SRBF that takes minutes); on unless --no-comparisons");
+                   "SRBF that takes half an hour); on unless --no-comparisons");
   codecs
       ->add_option("--comparison-texels", options->comparison_texels,
                    "Texels a side of the tiles that SRBF is compared by its variables on")
       ->capture_default_str()
       ->check(whole_number(16384, 1));
+  codecs
+      ->add_option("--comparison-spp", options->comparison_spp,
+                   "Eye paths a view and texel of these tiles: many, since noise is in every fit's "
+                   "error alike, and hides how far one is below another")
+      ->capture_default_str()
+      ->check(whole_number(1 << 20, 1));
   codecs->add_option(
       "--scenes", options->scenes,
       "Folder of scenes; default: $WEFT_SCENES, the installed share/weft/scenes, ./scenes");

@@ -17,10 +17,11 @@ struct FitOptions {
   Quantity quantity = Quantity::radiance;
   Storage storage = Storage::half;
   Filtering filtering = Filtering::values;
-  int iterations = 100;      ///< of L-BFGS, a descent below the top
-  int starts = 4;            ///< descents at the top, each from another guess
-  int sweeps = 1;            ///< over a level, after the one that starts from its parents
-  double mip_weight = 0;     ///< c_mip of equation 3.13
+  int iterations = 100;    ///< of L-BFGS, a descent below the top
+  double decrease = 1e-3;  ///< a descent ends where ten iterations lower the squared error by less
+  int starts = 4;          ///< descents at the top, each from another guess
+  int sweeps = 1;          ///< over a level, after the one that starts from its parents
+  double mip_weight = 0;   ///< c_mip of equation 3.13
   double smooth_weight = 0;  ///< c_smooth of equation 3.14
   bool robust = true;        ///< neighbours across an edge don't pull
   bool restarts = true;      ///< from neighbours' kernels, where those fit a texel better

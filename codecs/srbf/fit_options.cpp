@@ -81,6 +81,7 @@ FitOptions fit_options(const Settings& parameters) {
       parameters.choice("quantity", {"B", "f"}) == "f" ? Quantity::over_cosine : Quantity::radiance;
   options.storage = storage_parameter(parameters);
   options.iterations = count("iterations", options.iterations, 1, 10000);
+  options.decrease = parameters.number("decrease", options.decrease, 0, 0.1);
   options.starts = count("starts", options.starts, 1, 100);
   options.sweeps = count("sweeps", options.sweeps, 0, 100);
   options.mip_weight = parameters.number("mip_weight", options.mip_weight, 0, 1e6);
@@ -94,6 +95,8 @@ FitOptions fit_options(const Settings& parameters) {
 
 std::string parameter_help() {
   return "bits = half               half | 8 | float: what the textures hold\n"
+         "decrease = 0.001          a descent ends where ten iterations lower the squared error by "
+         "less, relatively; 0: never\n"
          "em_angles = false         true: the initial guess moves the angles, too (the paper)\n"
          "filtering = values        between texels and levels, of B; numbers: of what is fitted, "
          "by the GPU's filter, with defaults of its own below\n"
@@ -118,6 +121,7 @@ std::string parameter_help() {
 
 std::string to_json(const FitOptions& options) {
   return nlohmann::json{{"bits", name_of(options.storage)},
+                        {"decrease", options.decrease},
                         {"em_angles", options.modes.em_angles},
                         {"filtering", name_of(options.filtering)},
                         {"iterations", options.iterations},

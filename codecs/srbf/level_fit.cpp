@@ -105,6 +105,11 @@ class LevelFit {
   }
 
  private:
+  // Of a descent below the top.
+  DescentLimits descent() const {
+    return {.iterations = options_.iterations, .decrease = options_.decrease};
+  }
+
   Workspace& workspace_at(std::size_t texel) {
     Workspace& workspace = workspaces_.local();
     data_.abrdf(level_, texel, workspace.abrdf);
@@ -116,7 +121,8 @@ class LevelFit {
 
   TexelFit from_scratch(std::size_t texel) {
     return workspace_at(texel).fitter.from_scratch(
-        options_.starts, {.iterations = 4 * options_.iterations, .decrease = 2e-4});
+        options_.starts,
+        {.iterations = 4 * options_.iterations, .decrease = options_.decrease / 5});
   }
 
   TexelFit from_parents(std::size_t texel) {
@@ -135,8 +141,7 @@ class LevelFit {
     TexelFit best = best_of(texel, workspace.fitter, starts, nullptr);
     if (hints_.empty() || misfit(best) <= DescentLimits{}.enough) return best;
     TexelFit other = workspace.fitter.descend(
-        workspace.fitter.as_it_is(in_order_of(parents_[own], hints_[texel])),
-        {.iterations = options_.iterations});
+        workspace.fitter.as_it_is(in_order_of(parents_[own], hints_[texel])), descent());
     if (!(misfit(other) < misfit(best))) return best;
     restarted_[texel] = 1;
     return other;
@@ -179,7 +184,7 @@ class LevelFit {
   // Descends from `now`, or the first start, and from the most promising of the others.
   TexelFit best_of(std::size_t texel, TexelFitter& fitter, const std::vector<Kernels>& starts,
                    const TexelFit* now) {
-    const DescentLimits limits{.iterations = options_.iterations};
+    const DescentLimits limits = descent();
     std::vector<TexelFit> begun;
     for (const Kernels& start : starts) begun.push_back(fitter.as_it_is(start));
     TexelFit best =

@@ -289,4 +289,5 @@ TEST_CASE("bench codecs refuses what it cannot measure, before it measures anyth
   refused({"--scenes", "nothing"}, {"nothing", "folder"});
   refused({"--data", "small.btf", "--codec", "ptm", "--scenes", "nothing"}, {"nothing", "folder"});
   refused({"--comparison-texels", "0"}, {"--comparison-texels", "'0'", "from 1 to"});
+  refused({"--comparison-spp", "0"}, {"--comparison-spp", "'0'", "from 1 to"});
 }

@@ -251,6 +251,22 @@ TEST_CASE("SRBF: texels that their parent misleads start again from a neighbour"
         0.8 * level_of(*fit_with("false"), 0)["relative_rmse"].get<double>());
 }
 
+TEST_CASE("SRBF: descents that go on where little is won end lower, at every level") {
+  const auto btf = realistic_btf(2, "regular:3x8");
+  const auto fit_with = [&](const std::string& decrease) {
+    return fitted(btf, {"kernels=4", "iterations=400", "sweeps=0", "decrease=" + decrease});
+  };
+  const auto early = fit_with("0.1");
+  const auto late = fit_with("1e-5");
+  for (const int level : {0, 1}) {
+    INFO("level " << level);
+    CHECK(level_of(*late, level)["relative_rmse"].get<double>() <
+          0.95 * level_of(*early, level)["relative_rmse"].get<double>());
+  }
+  CHECK_THROWS_WITH(fit_with("0.2"), Catch::Contains("decrease") && Catch::Contains("0.1"));
+  CHECK_THROWS_WITH(fit_with("-1"), Catch::Contains("decrease"));
+}
+
 TEST_CASE("SRBF: a codec.json that names what there is not is refused") {
   const TemporaryFolder folder;
   fitted(realistic_btf(1, "regular:3x6"), {"kernels=2", "iterations=1"})->save(folder.path / "a");

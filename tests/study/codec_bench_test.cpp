@@ -200,7 +200,8 @@ TEST_CASE("Codecs are held against each other where both were fitted to the stru
     return bench;
   };
   const auto bars = weft::comparison_bars("rings", {{"srbf optimal", with(0.9)},
-                                                    {"srbf optimal float", with(0.89)},
+                                                    {"srbf default", with(0.9)},
+                                                    {"srbf default float", with(0.89)},
                                                     {"srbf half-light-view", with(1)},
                                                     {"srbf half-half-half", with(1.2)},
                                                     {"srbf half-difference", with(0)},
