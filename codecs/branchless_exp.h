@@ -3,9 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 namespace weft {
 
@@ -37,26 +39,61 @@ inline float branchless_log(float x) {
   return exponent * 0.693147181F + (m + q * (p * m - 0.5F));
 }
 
-/// x^n of x in [0, 1] (or a bit more) and n >= 0, to 4e-7 (1 + |log x^n|) of itself; held at
-/// 2^-125. By minimax polynomials of base 2: fewer steps than an exponential of a logarithm.
-inline float branchless_power(float x, float n) {
+/// x[k]^n[k] of x in [0, 1] (or a bit more) and n >= 0, to 4e-7 (1 + |log x^n|) of itself; held at
+/// 2^-125. By minimax polynomials of base 2: fewer steps than an exponential of a logarithm. Of
+/// floats, or vectors of them, step by step for all k: one after the other, a power would wait in
+/// the CPU's queue for the one before.
+/// @tparam Int  as many integers.
+template <typename Int, typename F, std::size_t Count>
+[[gnu::always_inline]] inline std::array<F, Count> branchless_powers(
+    const std::array<F, Count>& x, const std::array<F, Count>& n) {
   constexpr std::int32_t root_half = 0x3F3504F3;
-  const std::int32_t bits = std::bit_cast<std::int32_t>(x) - root_half;
-  const float m = std::bit_cast<float>((bits & 0x7FFFFF) + root_half) - 1;
-  const float q = m * m;
-  const float low = (1.4426949F - 0.721352816F * m) + q * (0.480923235F - 0.360239625F * m);
-  const float high = (0.287098706F - 0.24887687F * m) + q * (0.234042361F - 0.145811677F * m);
-  const float log2 = static_cast<float>(bits >> 23) + m * (low + q * q * high);
-  const float y = std::max(n * log2, -125.0F);
+  const auto as_float = [](const Int& v) {
+    if constexpr (std::is_arithmetic_v<Int>) {
+      return static_cast<F>(v);
+    } else {
+      return __builtin_convertvector(v, F);
+    }
+  };
+  const auto each = [](const auto& step) {
+    for (std::size_t k = 0; k < Count; ++k) step(k);
+  };
+  std::array<Int, Count> bits;
+  std::array<F, Count> m, q, low, high, y, shifted, r, power;  // NOLINT
+  each([&](std::size_t k) { bits[k] = std::bit_cast<Int>(x[k]) - root_half; });
+  each([&](std::size_t k) {
+    m[k] = std::bit_cast<F>((bits[k] & 0x7FFFFF) + root_half) - 1.0F;
+    q[k] = m[k] * m[k];
+  });
+  each([&](std::size_t k) {
+    low[k] = (1.4426949F - 0.721352816F * m[k]) + q[k] * (0.480923235F - 0.360239625F * m[k]);
+    high[k] = (0.287098706F - 0.24887687F * m[k]) + q[k] * (0.234042361F - 0.145811677F * m[k]);
+  });
+  each([&](std::size_t k) {
+    y[k] = n[k] * (as_float(bits[k] >> 23) + m[k] * (low[k] + q[k] * q[k] * high[k]));
+    y[k] = y[k] < -125.0F ? F{} - 125.0F : y[k];
+  });
   // Adding 1.5 * 2^23 leaves the nearest whole number in the lowest bits.
   constexpr float shift = 12582912;
-  const float shifted = y + shift;
-  const float r = y - (shifted - shift);
-  const float s = r * r;
-  const float p = (1.00000012F + 0.693146944F * r) + s * (0.240221202F + 0.0555071309F * r) +
-                  s * s * (0.00967554096F + 0.00132764713F * r);
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(p) +
-                              (std::bit_cast<std::uint32_t>(shifted) << 23));
+  each([&](std::size_t k) {
+    shifted[k] = y[k] + shift;
+    r[k] = y[k] - (shifted[k] - shift);
+    q[k] = r[k] * r[k];
+  });
+  each([&](std::size_t k) {
+    power[k] = (1.00000012F + 0.693146944F * r[k]) + q[k] * (0.240221202F + 0.0555071309F * r[k]) +
+               q[k] * q[k] * (0.00967554096F + 0.00132764713F * r[k]);
+  });
+  each([&](std::size_t k) {
+    power[k] =
+        std::bit_cast<F>(std::bit_cast<Int>(power[k]) + (std::bit_cast<Int>(shifted[k]) << 23));
+  });
+  return power;
+}
+
+/// The same of one.
+inline float branchless_power(float x, float n) {
+  return branchless_powers<std::int32_t>(std::array{x}, std::array{n})[0];
 }
 
 }  // namespace weft

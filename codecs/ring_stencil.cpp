@@ -2,7 +2,12 @@
 
 #include <fmt/core.h>
 
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -17,95 +22,127 @@ namespace {
 constexpr float same_angle = 1e-3F;  // radians
 constexpr float pi = std::numbers::pi_v<float>;
 
-// As many directions side by side as the CPU takes, or one, four times: of floats alone the
-// compiler would make branches that no CPU foresees.
-#ifdef __AVX512F__
-using Wide = Vec16;
-#else
-using Wide = Vec8;
-#endif
-constexpr std::size_t wide = sizeof(Wide) / sizeof(float);
 using WideInt = std::int32_t __attribute__((vector_size(sizeof(Wide))));
 
-Vec4 floor_of(Vec4 x) {
-  for (std::size_t i = 0; i < 4; ++i) x[i] = std::floor(x[i]);
-  return x;
-}
 Wide floor_of(Wide x) {
-  for (std::size_t i = 0; i < wide; ++i) x[i] = std::floor(x[i]);
-  return x;
-}
-Vec4 root_of(Vec4 x) {
-  for (std::size_t i = 0; i < 4; ++i) x[i] = std::sqrt(x[i]);
+  for (std::size_t i = 0; i < wide_lanes; ++i) x[i] = std::floor(x[i]);
   return x;
 }
 Wide root_of(Wide x) {
-  for (std::size_t i = 0; i < wide; ++i) x[i] = std::sqrt(x[i]);
+  for (std::size_t i = 0; i < wide_lanes; ++i) x[i] = std::sqrt(x[i]);
   return x;
 }
 
 // column[ring], the ring a whole number.
-Vec4 picked(const std::array<float, 32>& column, const Vec4& ring) {
-  return Vec4{} + column[static_cast<std::size_t>(static_cast<int>(ring[0]))];
-}
 Wide picked(const std::array<float, 32>& column, const Wide& ring) {
   const WideInt index = __builtin_convertvector(ring, WideInt);
 #ifdef __AVX512F__
-  return __builtin_shuffle(load<Wide>(column.data()), load<Wide>(column.data() + wide), index);
+  return __builtin_shuffle(load<Wide>(column.data()), load<Wide>(column.data() + wide_lanes),
+                           index);
 #else
   Wide values;
-  for (std::size_t i = 0; i < wide; ++i) values[i] = column[index[i]];
+  for (std::size_t i = 0; i < wide_lanes; ++i) values[i] = column[index[i]];
   return values;
 #endif
 }
 
-template <typename F>
-F absolute(const F& x) {
+Wide absolute(const Wide& x) {
   return x < 0.0F ? -x : x;
 }
 
-// asin of a in [0, sqrt(1/2)], to 1e-7 (a minimax polynomial, as below).
+// asin of a in [0, sqrt(1/2)], and atan of a in [0, 1], to 1e-7 (minimax polynomials in a^2):
+// numbers of both alike, so that one direction's are computed side by side.
+struct ArcPolynomial {
+  std::array<float, 7> c;
+};
+constexpr ArcPolynomial arcsine{
+    {0.166638657F, 0.0758156031F, 0.036256399F, 0.0705220848F, -0.0715999156F, 0.111696109F, 0}};
+constexpr ArcPolynomial arctangent{{-0.333316594F, 0.199627042F, -0.139765814F, 0.0979423448F,
+                                    -0.0577735864F, 0.0230401345F, -0.00435540546F}};
+
+// Powers in pairs: half the chain of products that wait for each other.
 template <typename F>
-F arcsine(const F& a) {
+F arc(const std::array<F, 7>& c, const F& a) {
   const F q = a * a;
   const F q2 = q * q;
-  const F p = (0.166638657F + 0.0758156031F * q) + q2 * (0.036256399F + 0.0705220848F * q) +
-              q2 * q2 * (0.111696109F * q - 0.0715999156F);
+  const F p =
+      (c[0] + c[1] * q) + q2 * (c[2] + c[3] * q) + q2 * q2 * ((c[4] + c[5] * q) + c[6] * q2);
   return a + a * q * p;
 }
 
-// atan of a in [0, 1], to 1e-7.
-template <typename F>
-F arctangent(const F& a) {
-  const F q = a * a;
-  const F q2 = q * q;
-  const F p = (0.199627042F * q - 0.333316594F) + q2 * (0.0979423448F * q - 0.139765814F) +
-              q2 * q2 * ((0.0230401345F * q - 0.0577735864F) - 0.00435540546F * q2);
-  return a + a * q * p;
+Wide arc(const ArcPolynomial& polynomial, const Wide& a) {
+  std::array<Wide, 7> c;
+  for (std::size_t i = 0; i < c.size(); ++i) c[i] = Wide{} + polynomial.c[i];
+  return arc<Wide>(c, a);
 }
 
 // The angle from +z of a unit vector: without a division.
-template <typename F>
-F polar_angle(const F& sine, const F& cosine) {
-  const F angle = arcsine<F>(sine > cosine ? cosine : sine);
+Wide polar_angle(const Wide& sine, const Wide& cosine) {
+  const Wide angle = arc(arcsine, sine > cosine ? cosine : sine);
   return sine > cosine ? pi / 2 - angle : angle;
 }
 
+constexpr float least_divisor = 1e-30F;
+
 // atan2; 0 of (0, 0). Without a square root, and so not of the unit vector. The octant's sign and
 // offset are there before its angle is.
-template <typename F>
-F azimuth(const F& x, const F& y) {
-  const F ax = absolute(x);
-  const F ay = absolute(y);
-  const F larger = ay > ax ? ay : ax;
-  const F eighth = arctangent<F>((ay > ax ? ax : ay) / (larger > 1e-30F ? larger : F{} + 1e-30F));
-  F sign = ay > ax ? F{} - 1.0F : F{} + 1.0F;
-  F offset = ay > ax ? F{} + pi / 2 : F{};
+Wide azimuth(const Wide& x, const Wide& y) {
+  const Wide ax = absolute(x);
+  const Wide ay = absolute(y);
+  const Wide larger = ay > ax ? ay : ax;
+  const Wide eighth = arc(
+      arctangent, (ay > ax ? ax : ay) / (larger > least_divisor ? larger : Wide{} + least_divisor));
+  Wide sign = ay > ax ? Wide{} - 1.0F : Wide{} + 1.0F;
+  Wide offset = ay > ax ? Wide{} + pi / 2 : Wide{};
   sign = x < 0.0F ? -sign : sign;
   offset = x < 0.0F ? pi - offset : offset;
   sign = y < 0.0F ? -sign : sign;
   offset = y < 0.0F ? -offset : offset;
   return offset + sign * eighth;
+}
+
+// The same of one direction, without a branch: no CPU foresees an octant.
+struct SphericalAngles {
+  float theta;
+  float phi;
+};
+
+struct Turned {
+  float offset;
+  float sign;
+};
+constexpr std::array<Turned, 2> polar_half{{{0, 1}, {pi / 2, -1}}};
+constexpr std::array<Turned, 8> octants{{{0, 1},
+                                         {pi / 2, -1},
+                                         {pi, -1},
+                                         {pi - pi / 2, 1},
+                                         {-0.0F, -1},
+                                         {-pi / 2, 1},
+                                         {-pi, 1},
+                                         {-(pi - pi / 2), -1}}};
+
+SphericalAngles spherical_angles(const Direction& d) {
+  const float sine = std::sqrt(d.x * d.x + d.y * d.y);
+  const float ax = std::abs(d.x);
+  const float ay = std::abs(d.y);
+  const Turned& polar = polar_half[static_cast<std::size_t>(sine > d.z)];
+  const Turned& octant =
+      octants[static_cast<std::size_t>(ay > ax) | static_cast<std::size_t>(d.x < 0) << 1 |
+              static_cast<std::size_t>(d.y < 0) << 2];
+  constexpr auto both = [](std::size_t i) { return Vec4{arcsine.c[i], arctangent.c[i], 0, 0}; };
+  const std::array<Vec4, 7> c{both(0), both(1), both(2), both(3), both(4), both(5), both(6)};
+  const Vec4 angle =
+      arc<Vec4>(c, Vec4{std::min(sine, d.z),
+                        std::min(ax, ay) / std::max(std::max(ax, ay), least_divisor), 0, 0});
+  return {polar.offset + polar.sign * angle[0], octant.offset + octant.sign * angle[1]};
+}
+
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+// 0 of a NaN.
+Vec4 at_least_zero(Vec4 x) {
+  for (std::size_t i = 0; i < 4; ++i) x[i] = std::max(0.0F, x[i]);
+  return x;
 }
 
 struct Placed {
@@ -201,8 +238,18 @@ RingStencil::RingStencil(const HemisphereSampling& sampling) : triangulation_(sa
     for (const Placed& p : ring) directions.push_back(p.index);
     append_ring(directions, ring[0].theta, ring[0].phi);
   }
-  for (std::size_t i = 0; i + 1 < ring_count_; ++i)
+  for (std::size_t i = 0; i + 1 < ring_count_; ++i) {
     rings_.per_width[i] = 1 / (rings_.theta[i + 1] - rings_.theta[i]);
+    const auto of_two = [i](const Column& column) {
+      return std::array<float, 4>{column[i], column[i + 1], 0, 0};
+    };
+    bands_.push_back({.theta = rings_.theta[i],
+                      .per_width = rings_.per_width[i],
+                      .steps = of_two(rings_.steps),
+                      .zero = of_two(rings_.zero),
+                      .first = {static_cast<std::int32_t>(rings_.first[i]),
+                                static_cast<std::int32_t>(rings_.first[i + 1]), 0, 0}});
+  }
 }
 
 void RingStencil::append_ring(std::span<const std::uint16_t> directions, float theta,
@@ -225,27 +272,26 @@ void RingStencil::append_ring(std::span<const std::uint16_t> directions, float t
   glsl_order_.insert(glsl_order_.end(), directions.begin(), directions.end());
 }
 
-template <typename F>
-RingStencil::Bilinear<F> RingStencil::place(const F& x, const F& y, const F& z) const {
-  const F theta = polar_angle<F>(root_of(x * x + y * y), z);
-  const F phi = azimuth<F>(x, y);
+RingStencil::Bilinear RingStencil::place(const Wide& x, const Wide& y, const Wide& z) const {
+  const Wide theta = polar_angle(root_of(x * x + y * y), z);
+  const Wide phi = azimuth(x, y);
   // By the cosine, which is there before theta is; the weight below is held, so that rounding at a
   // ring does no harm.
-  F band{};
+  Wide band{};
   for (std::size_t ring = 1; ring + 1 < ring_count_; ++ring)
-    band += z <= rings_.cosine[ring] ? F{} + 1.0F : F{};
-  F lower = (theta - picked(rings_.theta, band)) * picked(rings_.per_width, band);
-  lower = lower < 0.0F ? F{} : lower;
-  lower = lower > 1.0F ? F{} + 1.0F : lower;
-  Bilinear<F> bilinear;
+    band += z <= rings_.cosine[ring] ? Wide{} + 1.0F : Wide{};
+  Wide lower = (theta - picked(rings_.theta, band)) * picked(rings_.per_width, band);
+  lower = lower < 0.0F ? Wide{} : lower;
+  lower = lower > 1.0F ? Wide{} + 1.0F : lower;
+  Bilinear bilinear;
   for (std::size_t k = 0; k < 2; ++k) {
-    const F ring = band + static_cast<float>(k);
-    const F asked = phi * picked(rings_.steps, ring) + picked(rings_.zero, ring);
-    const F at = asked > 0.0F ? asked : F{};  // of a NaN, the first
-    const F below = floor_of(at);
-    const F share = asked - below;
+    const Wide ring = band + static_cast<float>(k);
+    const Wide asked = phi * picked(rings_.steps, ring) + picked(rings_.zero, ring);
+    const Wide at = asked > 0.0F ? asked : Wide{};  // of a NaN, the first
+    const Wide below = floor_of(at);
+    const Wide share = asked - below;
     bilinear.pair[k] = picked(rings_.first, ring) + below;
-    const F ring_weight = k == 0 ? 1.0F - lower : lower;
+    const Wide ring_weight = k == 0 ? 1.0F - lower : lower;
     bilinear.weight[2 * k] = ring_weight * (1.0F - share);
     bilinear.weight[2 * k + 1] = ring_weight * share;
   }
@@ -256,13 +302,13 @@ StencilBatch RingStencil::locate(const HemisphereSampling& sampling,
                                  const DirectionLanes& directions) const {
   if (!has_rings()) return triangulation_.locate(sampling, directions);
   StencilBatch batch;
-  for (std::size_t first = 0; first < batch_lanes; first += wide) {
-    const Bilinear<Wide> bilinear =
+  for (std::size_t first = 0; first < batch_lanes; first += wide_lanes) {
+    const Bilinear bilinear =
         place(load<Wide>(&directions.x[first]), load<Wide>(&directions.y[first]),
               load<Wide>(&directions.z[first]));
     const WideInt upper = __builtin_convertvector(bilinear.pair[0], WideInt);
     const WideInt lower = __builtin_convertvector(bilinear.pair[1], WideInt);
-    for (std::size_t i = 0; i < wide; ++i) {
+    for (std::size_t i = 0; i < wide_lanes; ++i) {
       StencilLane& lane = batch[first + i];
       std::memcpy(&lane.index[0], &pairs_[static_cast<std::size_t>(upper[i])], sizeof pairs_[0]);
       std::memcpy(&lane.index[2], &pairs_[static_cast<std::size_t>(lower[i])], sizeof pairs_[0]);
@@ -272,22 +318,49 @@ StencilBatch RingStencil::locate(const HemisphereSampling& sampling,
   return batch;
 }
 
+// By the cosine, as above: after how many of the rings, but for the first and the last.
+[[gnu::always_inline]] inline const RingStencil::Band& RingStencil::band_of(float cosine) const {
+#ifdef __AVX512F__
+  const Wide asked = Wide{} + cosine;
+  const std::uint32_t after =
+      _mm512_cmp_ps_mask((__m512)asked, (__m512)load<Wide>(rings_.cosine.data()), _CMP_LE_OQ) |
+      static_cast<std::uint32_t>(_mm512_cmp_ps_mask(
+          (__m512)asked, (__m512)load<Wide>(&rings_.cosine[wide_lanes]), _CMP_LE_OQ))
+          << wide_lanes;
+  const std::uint32_t between = (1U << (ring_count_ - 1)) - 2;
+  return bands_[static_cast<std::size_t>(std::popcount(after & between))];
+#else
+  std::size_t band = 0;
+  for (std::size_t ring = 1; ring + 1 < ring_count_; ++ring)
+    band += static_cast<std::size_t>(cosine <= rings_.cosine[ring]);
+  return bands_[band];
+#endif
+}
+
 StencilLane RingStencil::locate(const HemisphereSampling& sampling,
                                 const Direction& direction) const {
   if (!has_rings()) {
     const Stencil s = sampling.locate(direction);
     return {{s.index[0], s.index[1], s.index[2], 0}, {s.weight[0], s.weight[1], s.weight[2], 0}};
   }
-  const Bilinear<Vec4> bilinear =
-      place(Vec4{} + direction.x, Vec4{} + direction.y, Vec4{} + direction.z);
-  const auto pair = [&](std::size_t k) {
-    return &pairs_[static_cast<std::size_t>(static_cast<int>(bilinear.pair[k][0]))];
-  };
-  const auto& w = bilinear.weight;
-  const Vec4 weight{w[0][0], w[1][0], w[2][0], w[3][0]};
+  const SphericalAngles angles = spherical_angles(direction);
+  const Band& band = band_of(direction.z);
+  Vec4 lower = Vec4{} + (angles.theta - band.theta) * band.per_width;
+  lower = lower < 0.0F ? Vec4{} : lower;
+  lower = lower > 1.0F ? Vec4{} + 1.0F : lower;
+  // Two rings side by side. What is asked is held at 0 for a NaN: then the first.
+  const Vec4 asked = angles.phi * load<Vec4>(band.steps.data()) + load<Vec4>(band.zero.data());
+  const Int4 below = __builtin_convertvector(at_least_zero(asked), Int4);
+  const Vec4 share = asked - __builtin_convertvector(below, Vec4);
+  const Int4 pair = load<Int4>(band.first.data()) + below;
+  const Vec4 ring_weight = __builtin_shufflevector(1.0F - lower, lower, 0, 4, 1, 5);
+  const Vec4 weight =
+      __builtin_shufflevector(ring_weight * (1.0F - share), ring_weight * share, 0, 4, 1, 5);
   StencilLane stencil;
-  std::memcpy(&stencil.index[0], pair(0), sizeof pairs_[0]);
-  std::memcpy(&stencil.index[2], pair(1), sizeof pairs_[0]);
+  for (std::size_t k = 0; k < 2; ++k) {
+    std::memcpy(&stencil.index[2 * k], &pairs_[static_cast<std::size_t>(pair[k])],
+                sizeof pairs_[0]);
+  }
   std::memcpy(stencil.weight.data(), &weight, sizeof weight);
   return stencil;
 }

@@ -17,6 +17,7 @@
 #include "btf/hemisphere_sampling.h"
 #include "codecs/gl_program.h"
 #include "codecs/stencil_batch.h"
+#include "codecs/wide_vector.h"
 
 namespace weft {
 
@@ -48,18 +49,27 @@ class RingStencil {
     alignas(64) Column zero{};       ///< steps from the ring's first pair to phi = 0
     alignas(64) Column first{};      ///< of the ring, in pairs_
   };
-  /// Bilinear place: the upper ring's, then the lower's.
-  template <typename Floats>
+  /// Bilinear places: the upper ring's, then the lower's.
   struct Bilinear {
-    std::array<Floats, 2> pair;  ///< in pairs_
-    std::array<Floats, 4> weight;
+    std::array<Wide, 2> pair;  ///< in pairs_
+    std::array<Wide, 4> weight;
   };
-  template <typename Floats>
-  Bilinear<Floats> place(const Floats& x, const Floats& y, const Floats& z) const;
+  Bilinear place(const Wide& x, const Wide& y, const Wide& z) const;
+  // Between a ring and the next: what one direction needs of them, side by side.
+  struct alignas(64) Band {
+    float theta = 0;
+    float per_width = 0;
+    std::array<float, 2> unused{};
+    std::array<float, 4> steps{};  // of two rings, as the next two
+    std::array<float, 4> zero{};
+    std::array<std::int32_t, 4> first{};
+  };
+  const Band& band_of(float cosine) const;
   void append_ring(std::span<const std::uint16_t> directions, float theta, float first_phi);
 
   std::size_t ring_count_ = 0;  // 0: the triangulation answers
   Rings rings_;                 // the pole first, theta ascending
+  std::vector<Band> bands_;     // likewise
   // Each ring's directions and their successors, ring by ring, phi ascending; twice around and a
   // bit more, so that no phi has to be brought into a range.
   std::vector<std::array<std::int32_t, 2>> pairs_;

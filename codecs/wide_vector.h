@@ -39,8 +39,8 @@ struct Vec16 {
 };
 #endif
 
-template <typename Lanes>
-inline Lanes load(const float* p) {
+template <typename Lanes, typename Number>
+inline Lanes load(const Number* p) {
   Lanes v;
   std::memcpy(&v, p, sizeof v);
   return v;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "btf/raw_appearance.h"
 #include "codecs/branchless_exp.h"
@@ -22,10 +23,7 @@ namespace {
 constexpr std::size_t views_at_once = wide_quads;
 using Rows = std::array<Wide, 4>;
 
-inline Wide power_of(Wide x, const Wide& n) {
-  for (std::size_t i = 0; i < wide_lanes; ++i) x[i] = branchless_power(x[i], n[i]);
-  return x;
-}
+using WideInt = std::int32_t __attribute__((vector_size(sizeof(Wide))));
 
 inline Wide at_least_zero(Wide x) {
   return x < 0.0F ? Wide{} : x;  // a NaN stays one
@@ -39,13 +37,16 @@ inline Wide row_of(const std::array<const float*, views_at_once>& quads) {
 
 inline Wide row_of(const std::array<const half*, views_at_once>& quads) {
 #ifdef __F16C__
-  std::array<long long, views_at_once> q;
-  for (std::size_t i = 0; i < views_at_once; ++i) std::memcpy(&q[i], quads[i], sizeof q[i]);
+  const auto two = [&](std::size_t i) {
+    return _mm_loadh_pi((__m128)_mm_loadl_epi64((const __m128i*)quads[i]),
+                        (const __m64*)quads[i + 1]);
+  };
 #ifdef __AVX512F__
   // Unmasked, GCC 12 takes its own header for uninitialised (its bug 105593).
-  return (Wide)_mm512_maskz_cvtph_ps(0xFFFF, _mm256_set_epi64x(q[3], q[2], q[1], q[0]));
+  return (Wide)_mm512_maskz_cvtph_ps(
+      0xFFFF, (__m256i)_mm256_insertf128_ps(_mm256_castps128_ps256(two(0)), two(2), 1));
 #else
-  return (Wide)_mm256_cvtph_ps(_mm_set_epi64x(q[1], q[0]));
+  return (Wide)_mm256_cvtph_ps((__m128i)two(0));
 #endif
 #else
   Wide row;
@@ -93,13 +94,69 @@ inline Quad quad_of(const Rows& rows) {
   return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
+#ifdef __AVX512F__
+// Two quads that follow each other. Halfs are transposed before they become floats: half the
+// registers, and one load brings both quads.
+// @param place  (view, texel) to where the first one's numbers begin.
+template <typename Place>
+[[gnu::always_inline]] inline std::array<Quad, 2> two_quads_of(const Place& place) {
+  const auto both = [&](std::size_t v, std::size_t t) {  // of two views
+    const auto eight = [](const half* p) {
+      __m128i numbers;
+      std::memcpy(&numbers, p, sizeof numbers);
+      return numbers;
+    };
+    return _mm256_inserti128_si256(_mm256_castsi128_si256(eight(place(v, t))),
+                                   eight(place(v + 2, t)), 1);
+  };
+  // Of each view, number by number: the four texels' a, then their b.
+  struct Numbers {
+    __m256i a_b, c_d;
+  };
+  const auto numbers = [](__m256i even, __m256i odd) {
+    return Numbers{_mm256_unpacklo_epi32(even, odd), _mm256_unpackhi_epi32(even, odd)};
+  };
+  std::array<std::array<Numbers, 2>, 2> of_quad;  // [quad][views 0 and 2, 1 and 3]
+  for (std::size_t v = 0; v < 2; ++v) {
+    const __m256i t0 = both(v, 0);
+    const __m256i t1 = both(v, 1);
+    const __m256i t2 = both(v, 2);
+    const __m256i t3 = both(v, 3);
+    of_quad[0][v] = numbers(_mm256_unpacklo_epi16(t0, t1), _mm256_unpacklo_epi16(t2, t3));
+    of_quad[1][v] = numbers(_mm256_unpackhi_epi16(t0, t1), _mm256_unpackhi_epi16(t2, t3));
+  }
+  const auto floats = [](__m256i halfs) { return (Wide)_mm512_maskz_cvtph_ps(0xFFFF, halfs); };
+  const auto quad = [&](const std::array<Numbers, 2>& n) {
+    return Quad{floats(_mm256_unpacklo_epi64(n[0].a_b, n[1].a_b)),
+                floats(_mm256_unpackhi_epi64(n[0].a_b, n[1].a_b)),
+                floats(_mm256_unpacklo_epi64(n[0].c_d, n[1].c_d)),
+                floats(_mm256_unpackhi_epi64(n[0].c_d, n[1].c_d))};
+  };
+  return {quad(of_quad[0]), quad(of_quad[1])};
+}
+#endif
+
 // Equation 1, |w| max(<w, l> / |w|, 0)^n = <w, l> ((<w, l> / |w|)^2)^((n - 1) / 2) where <w, l> is
-// positive. A NaN stays one.
-inline Wide lobe(const Quad& q, const Direction& light) {
-  const Wide product = q.x * light.x + q.y * light.y + q.z * light.z;
-  const Wide square = q.x * q.x + q.y * q.y + q.z * q.z;
-  const Wide value = product * power_of(product * product / square, 0.5F * q.w - 0.5F);
-  return product <= 0.0F ? Wide{} : value;
+// positive, summed up. A NaN stays one.
+template <std::size_t Count>
+[[gnu::always_inline]] inline Wide sum_of(const std::array<Quad, Count>& lobes,
+                                          const Direction& light) {
+  std::array<Wide, Count> product;
+  std::array<Wide, Count> square_cosine;
+  std::array<Wide, Count> exponent;
+  for (std::size_t k = 0; k < Count; ++k) {
+    const Quad& q = lobes[k];
+    product[k] = q.x * light.x + q.y * light.y + q.z * light.z;
+    square_cosine[k] = product[k] * product[k] / (q.x * q.x + q.y * q.y + q.z * q.z);
+    exponent[k] = 0.5F * q.w - 0.5F;
+  }
+  const std::array<Wide, Count> power = branchless_powers<WideInt>(square_cosine, exponent);
+  const auto lobe = [&](std::size_t k) {
+    return product[k] <= 0.0F ? Wide{} : product[k] * power[k];
+  };
+  Wide sum = lobe(0);
+  for (std::size_t k = 1; k < Count; ++k) sum += lobe(k);
+  return sum;
 }
 
 }  // namespace
@@ -107,6 +164,7 @@ inline Wide lobe(const Quad& q, const Direction& light) {
 // The fields that a query asks for, view + texel, and their weights.
 template <typename Number>
 struct FieldRepresentation::Fields {
+  using Value = Number;
   std::array<const Number*, 4> view;
   std::array<std::size_t, 4> texel;
   Vec4 view_weight;
@@ -155,9 +213,13 @@ template <typename Number>
   return fields;
 }
 
-// Each of RGB a polynomial, all views and texels of a row at once.
+// Each of RGB a polynomial, all views and texels of a row at once. A function of its own, so that
+// the others keep their fields in registers.
 template <typename Number>
-Vec4 FieldRepresentation::polynomials_of_rgb(const Fields<Number>& fields, const Direction& light) {
+[[gnu::noinline]] Vec4 FieldRepresentation::polynomials_of_rgb(
+    const std::vector<const Number*>& of_view, const TexelStencil& texels, const StencilLane& views,
+    const Direction& light) const {
+  const Fields<Number> fields = this->fields(of_view, texels, views);
   const float x = light.x;
   const float y = light.y;
   const std::array<float, 6> basis{x * x, y * y, x * y, x, y, 1};
@@ -180,9 +242,20 @@ Vec4 FieldRepresentation::polynomials_of_rgb(const Fields<Number>& fields, const
 template <std::size_t Lobes, typename Fields>
 [[gnu::always_inline]] inline Wide sum_of_lobes(const Fields& fields, std::size_t first,
                                                 const Direction& light) {
-  Wide value{};
-  for (std::size_t k = 0; k < Lobes; ++k) value += lobe(quad_of(fields.quad(first, k)), light);
-  return value;
+  std::array<Quad, Lobes> lobes;
+  std::size_t k = 0;
+#ifdef __AVX512F__
+  if constexpr (std::is_same_v<typename Fields::Value, half>) {
+    for (; k + 1 < Lobes; k += 2) {
+      const std::array<Quad, 2> two = two_quads_of(
+          [&](std::size_t v, std::size_t t) { return fields.view[v] + fields.texel[t] + 4 * k; });
+      lobes[k] = two[0];
+      lobes[k + 1] = two[1];
+    }
+  }
+#endif
+  for (; k < Lobes; ++k) lobes[k] = quad_of(fields.quad(first, k));
+  return sum_of(lobes, light);
 }
 
 template <typename Fields>
@@ -212,17 +285,20 @@ template <typename Number>
     }
     value *= of_views(fields.view_weight, first) * of_texels(fields.texel_weight);
     const Rows colour = fields.quad(first, model_.quads() - 1);
-    sum += colour[0] * of_each_quad<0>(value) + colour[1] * of_each_quad<1>(value) +
-           colour[2] * of_each_quad<2>(value) + colour[3] * of_each_quad<3>(value);
+    // In pairs: half the chain of sums that wait for each other.
+    const Wide some = (colour[0] * of_each_quad<0>(value) + colour[1] * of_each_quad<1>(value)) +
+                      (colour[2] * of_each_quad<2>(value) + colour[3] * of_each_quad<3>(value));
+    sum = first == 0 ? some : sum + some;
   }
   return sum_of_quads(sum);
 }
 
 template <typename Number>
-[[gnu::always_inline]] inline Rgb FieldRepresentation::decode(const Fields<Number>& fields,
-                                                              const Direction& light) const {
-  const Vec4 rgb =
-      is_rgb(model_.kind) ? polynomials_of_rgb(fields, light) : luminances(fields, light);
+[[gnu::always_inline]] inline Rgb FieldRepresentation::decode(
+    const std::vector<const Number*>& of_view, const TexelStencil& texels, const StencilLane& views,
+    const Direction& light) const {
+  const Vec4 rgb = is_rgb(model_.kind) ? polynomials_of_rgb(of_view, texels, views, light)
+                                       : luminances(fields(of_view, texels, views), light);
   return Rgb(rgb[0], rgb[1], rgb[2]) *
          (has_cosine(model_.kind) ? model_.scale * light.z : model_.scale);
 }
@@ -230,10 +306,11 @@ template <typename Number>
 Rgb FieldRepresentation::evaluate(Texcoord uv, Direction light, Direction view,
                                   float /*lod*/) const {
   if (!(light.z > 0) || !(view.z > 0)) return {0, 0, 0};
-  const TexelStencil texels = bilinear_texels(uv, model_.head.width, model_.head.height);
+  // The views first: what is loaded waits for these longest.
   const StencilLane views = view_stencil_.locate(model_.head.views, view);
-  return halfs_.empty() ? decode(fields(float_views_, texels, views), light)
-                        : decode(fields(half_views_, texels, views), light);
+  const TexelStencil texels = bilinear_texels(uv, model_.head.width, model_.head.height);
+  return halfs_.empty() ? decode(float_views_, texels, views, light)
+                        : decode(half_views_, texels, views, light);
 }
 
 void FieldRepresentation::evaluate(std::span<const AppearanceQuery> queries,
@@ -251,7 +328,7 @@ Batch<Rgb> FieldRepresentation::decode(const std::vector<const Number*>& of_view
   Batch<Rgb> values;
   for (std::size_t i = 0; i < batch_lanes; ++i) {
     const Direction light(batch.light.x[i], batch.light.y[i], batch.light.z[i]);
-    values[i] = decode(fields(of_view, texels.lane(i), views[i]), light);
+    values[i] = decode(of_view, texels.lane(i), views[i], light);
   }
   return values;
 }

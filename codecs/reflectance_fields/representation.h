@@ -42,11 +42,13 @@ class FieldRepresentation : public Representation {
   Fields<Number> fields(const std::vector<const Number*>& of_view, const TexelStencil& texels,
                         const StencilLane& views) const;
   template <typename Number>
-  static Vec4 polynomials_of_rgb(const Fields<Number>& fields, const Direction& light);
+  Vec4 polynomials_of_rgb(const std::vector<const Number*>& of_view, const TexelStencil& texels,
+                          const StencilLane& views, const Direction& light) const;
   template <typename Number>
   Vec4 luminances(const Fields<Number>& fields, const Direction& light) const;
   template <typename Number>
-  Rgb decode(const Fields<Number>& fields, const Direction& light) const;
+  Rgb decode(const std::vector<const Number*>& of_view, const TexelStencil& texels,
+             const StencilLane& views, const Direction& light) const;
   template <typename Number>
   Batch<Rgb> decode(const std::vector<const Number*>& of_view, const QueryBatch& batch) const;
 
