@@ -6,7 +6,7 @@
 set -euo pipefail
 
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-weft=$docs/../weft
+weft=${WEFT:-$docs/../weft}
 page=$docs/results/papers_fitted.md
 measured=$(mktemp)
 trap 'rm -f "$measured"' EXIT

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <map>
 
 using namespace weft;
@@ -68,6 +69,44 @@ TEST_CASE("Ring weights sum to one, and interpolate theta and phi bilinearly") {
       }
       CHECK(sum == Approx(1).margin(1e-6));
       CHECK(mean_theta == Approx(std::min(theta, radians(75.0))).margin(1e-5));
+    }
+  }
+}
+
+TEST_CASE("A direction by itself stands where it does among sixteen, on axes and zeros too") {
+  for (const std::string name : {"ubo81", "ubo151"}) {
+    const HemisphereSampling sampling = named(name);
+    const RingStencil rings(sampling);
+    std::vector<Direction> asked = {{0, 0, 1}, {-0.0F, -0.0F, 1}, {0, -0.0F, 1}};
+    for (const float a : {0.0F, -0.0F, 0.6F, -0.6F}) {
+      for (const float b : {0.0F, -0.0F, 0.8F, -0.8F}) {
+        const float square = a * a + b * b;
+        asked.emplace_back(a, b, std::sqrt(std::max(0.0F, 1 - square)));
+        asked.emplace_back(b, a, std::sqrt(std::max(0.0F, 1 - square)));
+      }
+    }
+    for (int i = 0; i < 4000; ++i)
+      asked.push_back(from_spherical(radians(90 * std::fmod(0.618 * i, 1.0)),
+                                     radians(360 * std::fmod(0.755 * i, 1.0))));
+    for (const Direction& sampled : sampling.directions()) asked.push_back(sampled);
+    for (const Direction& d : asked) {
+      INFO(name << ": " << d.x << ' ' << d.y << ' ' << d.z);
+      DirectionLanes lanes;
+      lanes.x.fill(d.x);
+      lanes.y.fill(d.y);
+      lanes.z.fill(d.z);
+      const StencilLane among = rings.locate(sampling, lanes)[7];
+      std::map<int, float> sum;
+      for (std::size_t k = 0; k < 4; ++k) sum[among.index[k]] += among.weight[k];
+      CHECK(difference(sum, weights(sampling, rings, d)) < 1e-5F);
+    }
+    // Whatever is no number stands among the views, with weights that are none.
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const StencilLane nowhere = rings.locate(sampling, Direction(nan, nan, nan));
+    for (std::size_t k = 0; k < 4; ++k) {
+      CHECK(nowhere.index[k] >= 0);
+      CHECK(nowhere.index[k] < static_cast<int>(sampling.size()));
+      CHECK(std::isnan(nowhere.weight[k]));
     }
   }
 }
