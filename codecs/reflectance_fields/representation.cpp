@@ -184,13 +184,19 @@ struct FieldRepresentation::Fields {
 
 FieldRepresentation::FieldRepresentation(Model model)
     : model_(std::move(model)), view_stencil_(model_.head.views) {
-  if (model_.storage == Storage::half) halfs_.assign(model_.fields.begin(), model_.fields.end());
-  for (std::size_t view = 0; view < model_.head.views.size(); ++view) {
-    const std::size_t first = view * model_.head.texels() * model_.floats_a_field();
+  const std::size_t n_views = model_.head.views.size();
+  const std::size_t n = model_.head.texels() * model_.floats_a_field();
+  // A view is often a multiple of 4 kB: one texel's fields of all views would lie in one set of the
+  // cache. A line between views spreads them.
+  constexpr std::size_t line = 64 / sizeof(half);
+  if (model_.storage == Storage::half) halfs_.resize(n_views * (n + line));
+  for (std::size_t view = 0; view < n_views; ++view) {
+    const float* fields = &model_.fields[view * n];
     if (halfs_.empty()) {
-      float_views_.push_back(&model_.fields[first]);
+      float_views_.push_back(fields);
     } else {
-      half_views_.push_back(&halfs_[first]);
+      half_views_.push_back(&halfs_[view * (n + line)]);
+      std::copy_n(fields, n, &halfs_[view * (n + line)]);
     }
   }
 }
