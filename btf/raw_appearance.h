@@ -1,6 +1,8 @@
 // Codec zero: a raw BTF with its mip chain, interpolated over texels, directions and levels.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -42,6 +44,7 @@ struct AxisStencil {
   std::uint32_t high;
   float blend;
 };
+/// @param place  in [-0.5, n - 0.5], or a NaN.
 inline AxisStencil axis_stencil(float place, int n) {
   const float below = std::floor(place);
   // In [-1, n - 1]; of a NaN, which may not be cast, -1. Without a branch that no CPU foresees.

@@ -20,6 +20,7 @@
 #include "study/codec_bars.h"
 #include "study/codec_bench.h"
 #include "study/dataset_cache.h"
+#include "study/machine.h"
 
 namespace weft::cli {
 
@@ -253,6 +254,7 @@ void bench_codecs(const BenchCodecsOptions& options, Session& session) {
   for (const ComparedFits& compared : comparisons)
     std::ranges::move(bench_comparisons(compared, options, session), std::back_inserter(bars));
   report_bars(bars, session);
+  session.measured["processor"] = this_machine().processor;
 }
 
 }  // namespace

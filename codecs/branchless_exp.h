@@ -43,8 +43,8 @@ inline float branchless_log(float x) {
 /// 2^-125. By minimax polynomials of base 2: fewer steps than an exponential of a logarithm. Of
 /// floats, or vectors of them, step by step for all k: one after the other, a power would wait in
 /// the CPU's queue for the one before.
-/// @tparam Int  as many integers.
-template <typename Int, typename F, std::size_t Count>
+/// @tparam Int, Unsigned  as many integers.
+template <typename Int, typename Unsigned, typename F, std::size_t Count>
 [[gnu::always_inline]] inline std::array<F, Count> branchless_powers(
     const std::array<F, Count>& x, const std::array<F, Count>& n) {
   constexpr std::int32_t root_half = 0x3F3504F3;
@@ -85,15 +85,16 @@ template <typename Int, typename F, std::size_t Count>
                q[k] * q[k] * (0.00967554096F + 0.00132764713F * r[k]);
   });
   each([&](std::size_t k) {
-    power[k] =
-        std::bit_cast<F>(std::bit_cast<Int>(power[k]) + (std::bit_cast<Int>(shifted[k]) << 23));
+    // Unsigned, as what is beyond a float's range wraps around.
+    power[k] = std::bit_cast<F>(std::bit_cast<Unsigned>(power[k]) +
+                                (std::bit_cast<Unsigned>(shifted[k]) << 23));
   });
   return power;
 }
 
 /// The same of one.
 inline float branchless_power(float x, float n) {
-  return branchless_powers<std::int32_t>(std::array{x}, std::array{n})[0];
+  return branchless_powers<std::int32_t, std::uint32_t>(std::array{x}, std::array{n})[0];
 }
 
 }  // namespace weft

@@ -23,11 +23,15 @@ namespace weft {
 
 class RingStencil {
  public:
+  /// The pole is one of them, and one stays for the last ring's next.
+  static constexpr std::size_t most_rings = 32;
+
   explicit RingStencil(const HemisphereSampling& sampling);
 
   /// False where the triangulation answers.
   bool has_rings() const { return ring_count_ > 0; }
 
+  /// A NaN gets directions that there are, with whatever weights.
   /// @param sampling    that it was made of.
   /// @param directions  sixteen unit vectors, z >= 0.
   StencilBatch locate(const HemisphereSampling& sampling, const DirectionLanes& directions) const;
@@ -38,7 +42,6 @@ class RingStencil {
   GlProgram glsl(const HemisphereSampling& sampling, const std::string& prefix) const;
 
  private:
-  static constexpr std::size_t most_rings = 32;
   // Columns of `most_rings` numbers, so that a look-up is a permutation of two registers.
   using Column = std::array<float, most_rings>;
   struct Rings {
@@ -55,12 +58,12 @@ class RingStencil {
     std::array<Wide, 4> weight;
   };
   Bilinear place(const Wide& x, const Wide& y, const Wide& z) const;
-  // Between a ring and the next: what one direction needs of them, side by side.
+  // Between a ring and the next: what one direction needs of the two, side by side in a cache line.
+  // Filled up to four of each, which are loaded at once.
   struct alignas(64) Band {
     float theta = 0;
     float per_width = 0;
-    std::array<float, 2> unused{};
-    std::array<float, 4> steps{};  // of two rings, as the next two
+    alignas(16) std::array<float, 4> steps{};
     std::array<float, 4> zero{};
     std::array<std::int32_t, 4> first{};
   };
@@ -69,7 +72,7 @@ class RingStencil {
 
   std::size_t ring_count_ = 0;  // 0: the triangulation answers
   Rings rings_;                 // the pole first, theta ascending
-  std::vector<Band> bands_;     // likewise
+  std::vector<Band> bands_;     // that of each ring but the last
   // Each ring's directions and their successors, ring by ring, phi ascending; twice around and a
   // bit more, so that no phi has to be brought into a range.
   std::vector<std::array<std::int32_t, 2>> pairs_;

@@ -10,8 +10,6 @@ namespace weft {
 
 namespace {
 
-using Int4 = std::int32_t __attribute__((vector_size(16)));
-
 // Straight into its place: what is returned is copied, and waits for its own writing.
 inline void set_pairs(const StencilLane& views, const StencilLane& lights,
                       std::span<const float> of_light, float factor, PairLane& pairs) {

@@ -6,6 +6,7 @@
 #include <immintrin.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,7 @@ namespace weft {
 
 using Vec4 = float __attribute__((vector_size(16)));
 using Vec8 = float __attribute__((vector_size(32)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 #ifdef __AVX512F__
 using Vec16 = float __attribute__((vector_size(64)));
@@ -39,8 +41,8 @@ struct Vec16 {
 };
 #endif
 
-template <typename Lanes, typename Number>
-inline Lanes load(const Number* p) {
+template <typename Lanes>
+inline Lanes load(const float* p) {
   Lanes v;
   std::memcpy(&v, p, sizeof v);
   return v;
@@ -96,6 +98,8 @@ using Wide = Vec16;
 using Wide = Vec8;
 #endif
 constexpr std::size_t wide_lanes = sizeof(Wide) / sizeof(float);
+using WideInt = std::int32_t __attribute__((vector_size(sizeof(Wide))));
+using WideUnsigned = std::uint32_t __attribute__((vector_size(sizeof(Wide))));
 constexpr std::size_t wide_quads = wide_lanes / 4;
 
 /// Quads from several places, loaded straight to where they belong.
@@ -138,6 +142,10 @@ inline float sum_of(const Vec16& v) {
 }
 
 /// 0 where v is below 0 or a NaN.
+inline Vec4 not_negative(Vec4 v) {
+  for (std::size_t i = 0; i < 4; ++i) v[i] = std::max(0.0F, v[i]);
+  return v;
+}
 inline Vec16 not_negative(const Vec16& v) {
 #ifdef __AVX512F__
   return v > 0 ? v : Vec16{};

@@ -110,12 +110,15 @@ for btf in checker rings tissue; do
     done
   done
 done
-# Fits until little changes, and the bars, which want nothing else to run.
-if [[ ! -f $folder/bench.json ]]; then
-  "$weft" bench codecs --codec lobes --codec ptm --codec lafortune --codec srbf --comparison-texels "$texels" \
-    --scenes "$scenes" --json >"$folder/bench.new"
-  mv "$folder/bench.new" "$folder/bench.json"
-fi
+models=(--codec lobes --codec ptm --codec lafortune --codec srbf)
+bench() { # NAME OPTION...
+  [[ -f $folder/$1.json ]] && return
+  "$weft" bench codecs "${models[@]}" --scenes "$scenes" "${@:2}" --json >"$folder/$1.new"
+  mv "$folder/$1.new" "$folder/$1.json"
+}
+# Times, which want nothing else to run; then fits to the end, which only take long.
+bench times --no-comparisons
+bench comparisons --data "$folder/tissue.btf" --comparison-texels "$texels"
 fit tissue float bits=float
 fit tissue bits8 bits=8
 
@@ -239,18 +242,20 @@ below() { # NAME OTHER
 }
 
 converged() {
-  printf '\n### Converged\n\nRelative RMSE in %% of level 0 in halfs where descents go on to the end (`iterations=2000 decrease=1e-4`), and how far optimal is below; data of 8 bounces and 1,024 spp, whose noise is in every error alike.\n\n'
+  printf '\n### Converged\n\nRelative RMSE in %% of level 0 in halfs where descents go on nearly to the end (`iterations=2000 decrease=1e-4`), and how far optimal is below; last, optimal with defaults; data of 8 bounces and 1,024 spp, whose noise is in every error alike.\n\n'
   jq -r 'def percent: . * 10000 | round / 100;
     ["half-light-view", "half-half-half", "half-difference", "univariate"] as $others |
-    "| BTF | optimal | \($others | join(" | | ")) | |", "|---|---|\("---|" * 8)",
+    "| BTF | optimal | \($others | join(" | | ")) | | defaults |", "|---|---|\("---|" * 9)",
     (.comparisons | to_entries[] | .value.kernels.codecs as $fits | $fits["srbf optimal"].relative_rmse as $optimal |
       "| \(.key) | \($optimal | percent) | " + ($others | map($fits["srbf \(.)"].relative_rmse |
-        "\(percent) | \((1 - $optimal / .) * 1000 | round / 10) %") | join(" | ")) + " |")' "$folder/bench.json"
-  printf '\n### What is asked of fitted codecs\n\nFrom `weft bench codecs`; data of 64 x 64 texels and 8 bounces, of tissue where no structure is named; what compares SRBF with itself on %s x %s texels.\n\n' "$texels" "$texels"
-  jq -r '"| | measured | to reach | |", "|---|---:|---:|---|",
-    (.bars[] | select(.what | test("over batched|memory") | not) | "| \(.what) | \(.value * 100 | round / 100) \(.unit) | " +
+        "\(percent) | \((1 - $optimal / .) * 1000 | round / 10) %") | join(" | ")) +
+        " | \($fits["srbf default"].relative_rmse | percent) |")' "$folder/comparisons.json"
+  printf '\n### What is asked of fitted codecs\n\nFrom `weft bench codecs`, %s; data of 64 x 64 texels and 8 bounces, of tissue where no structure is named; what compares SRBF with itself on %s x %s texels.\n\n' "$(value times.json .processor)" "$texels" "$texels"
+  jq -rs '"| | measured | to reach | |", "|---|---:|---:|---|",
+    (.[0].bars + (.[1].bars | map(select(.what | test("^(checker|rings|tissue), "))))
+      | .[] | select(.what | test("over batched|memory") | not) | "| \(.what) | \(.value * 100 | round / 100) \(.unit) | " +
       (if has("below") then "below \(.below)" else "at least \(.at_least)" end) +
-      (if .met then " | met |" else " | **missed** |" end))' "$folder/bench.json"
+      (if .met then " | met |" else " | **missed** |" end))' "$folder/times.json" "$folder/comparisons.json"
 }
 
 for btf in checker rings tissue; do

@@ -28,8 +28,8 @@ std::span<const CodecVariant> factor_variants();
 /// Fits that are held against each other on one structure: lobes, PTM and Lafortune models.
 std::span<const CodecVariant> compared_models();
 
-/// The same of SRBF by its variables, with iterations and sweeps until little changes: minutes for
-/// a small tile.
+/// The same of SRBF by its variables, fitted nearly to the end (minutes for a small tile), and with
+/// defaults in halfs and floats.
 std::span<const CodecVariant> compared_kernels();
 
 using CodecBenches = std::map<std::string, CodecBench>;

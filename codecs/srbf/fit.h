@@ -5,6 +5,7 @@
 
 #include "btf/btf.h"
 #include "btf/progress.h"
+#include "codecs/srbf/minimise.h"
 #include "codecs/srbf/model.h"
 #include "codecs/srbf/modes.h"
 #include "settings/settings.h"
@@ -17,11 +18,14 @@ struct FitOptions {
   Quantity quantity = Quantity::radiance;
   Storage storage = Storage::half;
   Filtering filtering = Filtering::values;
-  int iterations = 100;    ///< of L-BFGS, a descent below the top
-  double decrease = 1e-3;  ///< a descent ends where ten iterations lower the squared error by less
-  int starts = 4;          ///< descents at the top, each from another guess
-  int sweeps = 1;          ///< over a level, after the one that starts from its parents
-  double mip_weight = 0;   ///< c_mip of equation 3.13
+  /// Of L-BFGS, a descent below the top; there four times as many.
+  int iterations = DescentLimits{}.iterations;
+  /// A descent below the top ends where ten iterations lower what is minimised, pulls included, by
+  /// less, relatively; there at a fifth of it.
+  double decrease = DescentLimits{}.decrease;
+  int starts = 4;            ///< descents at the top, each from another guess
+  int sweeps = 1;            ///< over a level, after the one that starts from its parents
+  double mip_weight = 0;     ///< c_mip of equation 3.13
   double smooth_weight = 0;  ///< c_smooth of equation 3.14
   bool robust = true;        ///< neighbours across an edge don't pull
   bool restarts = true;      ///< from neighbours' kernels, where those fit a texel better

@@ -95,12 +95,14 @@ FitOptions fit_options(const Settings& parameters) {
 
 std::string parameter_help() {
   return "bits = half               half | 8 | float: what the textures hold\n"
-         "decrease = 0.001          a descent ends where ten iterations lower the squared error by "
-         "less, relatively; 0: never\n"
+         "decrease = 0.001          a descent ends where ten iterations lower what it minimises by "
+         "less, relatively; at the top level a fifth of it\n"
          "em_angles = false         true: the initial guess moves the angles, too (the paper)\n"
          "filtering = values        between texels and levels, of B; numbers: of what is fitted, "
          "by the GPU's filter, with defaults of its own below\n"
-         "iterations = 100          of L-BFGS, each time that a texel is fitted\n"
+         "iterations = 100          of L-BFGS, each time that a texel is fitted; four times as "
+         "many at "
+         "the top level\n"
          "kernels = 20              J, 1 to 64\n"
          "mip_weight = 0            c_mip: pull towards the parent's numbers; 0.01 with "
          "filtering = numbers\n"

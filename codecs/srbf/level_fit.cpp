@@ -120,6 +120,7 @@ class LevelFit {
   }
 
   TexelFit from_scratch(std::size_t texel) {
+    // Where all that follows starts from, and of one texel.
     return workspace_at(texel).fitter.from_scratch(
         options_.starts,
         {.iterations = 4 * options_.iterations, .decrease = options_.decrease / 5});

@@ -1,10 +1,13 @@
 // The exponentials and logarithms that are computed side by side are as near as their comments say.
 #include "codecs/branchless_exp.h"
 
+#include <array>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "codecs/branchless_double.h"
+#include "codecs/wide_vector.h"
 
 using namespace weft;
 
@@ -47,6 +50,28 @@ TEST_CASE("branchless_power is within 4e-7 (1 + its logarithm) of itself") {
   CHECK(branchless_power(1, 512) == Approx(1).epsilon(4e-7));
   CHECK(branchless_power(0.3F, 0) == Approx(1).epsilon(4e-7));
   for (const float x : {0.F, 1e-40F, 0.5F}) CHECK(branchless_power(x, 512) < 1e-37F);
+}
+
+TEST_CASE("branchless_powers of vectors are those of floats, and wrap around where there is none") {
+  std::array<Wide, 3> x{};
+  std::array<Wide, 3> n{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < wide_lanes; ++i) {
+      x[k][i] = std::exp(-static_cast<float>(3 * i + k));
+      n[k][i] = k == 2 ? -150.0F : 0.4F + static_cast<float>(k);
+    }
+  }
+  const std::array<Wide, 3> powers = branchless_powers<WideInt, WideUnsigned>(x, n);
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t i = 0; i < wide_lanes; ++i) {
+      INFO(k << ", lane " << i);
+      // Products and sums are fused here or there.
+      const double log = n[k][i] * std::log(x[k][i]);
+      CHECK(powers[k][i] == Approx(branchless_power(x[k][i], n[k][i])).epsilon(4e-7 * (1 - log)));
+    }
+  }
+  // e^(150 (3 i + 2)) is no float: some number, and nothing that a sanitizer stops at.
+  CHECK_NOTHROW(branchless_power(x[2][1], n[2][1]));
 }
 
 TEST_CASE("Eight exponentials and logarithms of doubles are within 1e-12") {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 using namespace weft;
 
@@ -100,13 +101,65 @@ TEST_CASE("A direction by itself stands where it does among sixteen, on axes and
       for (std::size_t k = 0; k < 4; ++k) sum[among.index[k]] += among.weight[k];
       CHECK(difference(sum, weights(sampling, rings, d)) < 1e-5F);
     }
-    // Whatever is no number stands among the views, with weights that are none.
+    // Whatever is no number stands among the views.
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const StencilLane nowhere = rings.locate(sampling, Direction(nan, nan, nan));
-    for (std::size_t k = 0; k < 4; ++k) {
-      CHECK(nowhere.index[k] >= 0);
-      CHECK(nowhere.index[k] < static_cast<int>(sampling.size()));
-      CHECK(std::isnan(nowhere.weight[k]));
+    for (const Direction& none : {Direction(nan, nan, nan), Direction(nan, 0.6F, 0.8F),
+                                  Direction(0.6F, nan, 0.8F), Direction(0.6F, 0.8F, nan)}) {
+      DirectionLanes lanes;
+      lanes.x.fill(none.x);
+      lanes.y.fill(none.y);
+      lanes.z.fill(none.z);
+      for (const StencilLane& nowhere :
+           {rings.locate(sampling, none), StencilLane(rings.locate(sampling, lanes)[3])}) {
+        for (std::size_t k = 0; k < 4; ++k) {
+          CHECK(nowhere.index[k] >= 0);
+          CHECK(nowhere.index[k] < static_cast<int>(sampling.size()));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("From 2 to 32 rings, theta and phi are those that were asked for") {
+  for (const int count : {2, 3, 5, 16, 17, 18, 31, 32, 33}) {
+    std::vector<Direction> directions{{0, 0, 1}};
+    for (int ring = 1; ring < count; ++ring) {
+      for (int k = 0; k < 4 + ring % 3; ++k) {
+        const double turn = 2 * std::numbers::pi * (k + 0.2) / (4 + ring % 3);
+        directions.push_back(from_spherical(radians(80.0) * ring / (count - 1), turn));
+      }
+    }
+    const HemisphereSampling sampling(directions);
+    const RingStencil rings(sampling);
+    INFO(count << " rings");
+    REQUIRE(rings.has_rings() == (count <= 32));
+    if (!rings.has_rings()) continue;
+    for (int i = 0; i < 3000; ++i) {
+      const double theta = radians(80 * std::fmod(0.618 * i, 1.0));
+      const Direction asked = from_spherical(theta, radians(360 * std::fmod(0.755 * i, 1.0)));
+      DirectionLanes lanes;
+      lanes.x.fill(asked.x);
+      lanes.y.fill(asked.y);
+      lanes.z.fill(asked.z);
+      for (const StencilLane& s :
+           {rings.locate(sampling, asked), StencilLane(rings.locate(sampling, lanes)[12])}) {
+        double found = 0;
+        for (std::size_t k = 0; k < 4; ++k) found += s.weight[k] * theta_of(sampling[s.index[k]]);
+        REQUIRE(found == Approx(theta).margin(1e-5));
+        // Both of a ring are next to what was asked for.
+        for (std::size_t k = 0; k < 4; k += 2) {
+          if (s.index[k] == s.index[k + 1]) continue;  // the pole
+          const double steps =
+              2 * std::numbers::pi /
+              std::remainder(phi_of(sampling[s.index[k + 1]]) - phi_of(sampling[s.index[k]]),
+                             2 * std::numbers::pi);
+          const double share =
+              std::remainder(phi_of(asked) - phi_of(sampling[s.index[k]]), 2 * std::numbers::pi) *
+              steps / (2 * std::numbers::pi);
+          const double weight = s.weight[k] + s.weight[k + 1];
+          REQUIRE(s.weight[k + 1] == Approx(share * weight).margin(1e-4));
+        }
+      }
     }
   }
 }

@@ -263,6 +263,7 @@ TEST_CASE("SRBF: descents that go on where little is won end lower, at every lev
     CHECK(level_of(*late, level)["relative_rmse"].get<double>() <
           0.95 * level_of(*early, level)["relative_rmse"].get<double>());
   }
+  CHECK_NOTHROW(fit_options(Settings::from_text("", "test", {"decrease=0"})));
   CHECK_THROWS_WITH(fit_with("0.2"), Catch::Contains("decrease") && Catch::Contains("0.1"));
   CHECK_THROWS_WITH(fit_with("-1"), Catch::Contains("decrease"));
 }

@@ -8,6 +8,7 @@
 
 #include "btf/direction.h"
 #include "codecs/sample_error.h"
+#include "codecs/srbf/fit.h"
 #include "study/codec_bars.h"
 
 namespace {
@@ -222,6 +223,11 @@ TEST_CASE("Every variant is of a codec that there is, and has its own name") {
     for (const weft::CodecVariant& variant : variants) {
       CHECK_NOTHROW(weft::codec_named(variant.codec));
       CHECK(std::ranges::count(variants, variant.name, &weft::CodecVariant::name) == 1);
+      if (variant.codec == "srbf") {
+        INFO(variant.name);
+        CHECK_NOTHROW(
+            weft::srbf::fit_options(weft::Settings::from_text("", "test", variant.parameters)));
+      }
     }
   }
 }
