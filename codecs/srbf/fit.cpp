@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Raised when a fit makes something else of the same data.
-constexpr int fit_version = 3;
+constexpr int fit_version = 4;
 
 // The parameters that a checkpoint is known by: rounding and filtering come after the fit, so that
 // what is kept serves any.
@@ -115,13 +115,11 @@ Model fit(const Btf& btf, const FitOptions& options, Progress& progress) {
   Json levels = Json::array();
   std::vector<Kernels> kernels;  // level 0 first
   std::vector<Kernels> parents;
-  // Levels of the modes that the angles begin with: free angles start from these, too, so that they
-  // end no worse. One sweep fewer, as the free ones sweep over what starts from these; so the
-  // default, one, costs them nothing.
+  // Levels of the modes that the angles begin with, as a fit by these alone has them: free angles
+  // start from these, too, so that they end no worse.
   std::vector<Kernels> fixed_parents;
   FitOptions fixed = options;
   fixed.modes.free = false;
-  fixed.sweeps = std::max(0, options.sweeps - 1);
   double fallbacks = 0;
   for (int level = sizes.levels() - 1; level >= 0; --level) {
     const auto fitted = [&](const std::string& kind, const FitOptions& how,

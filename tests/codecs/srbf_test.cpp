@@ -251,6 +251,20 @@ TEST_CASE("SRBF: texels that their parent misleads start again from a neighbour"
         0.8 * level_of(*fit_with("false"), 0)["relative_rmse"].get<double>());
 }
 
+TEST_CASE("SRBF: free angles end no worse than fixed ones do by themselves, at every level") {
+  const auto btf = realistic_btf(4, "regular:3x8");
+  const auto fit_with = [&](const std::string& modes) {
+    return fitted(btf, {"kernels=3", "iterations=10", "sweeps=3", "modes=" + modes});
+  };
+  const auto fixed = fit_with("half-light-view");
+  const auto free = fit_with("optimal");
+  for (const int level : {0, 1, 2}) {
+    INFO("level " << level);
+    CHECK(level_of(*free, level)["relative_rmse"].get<double>() <=
+          level_of(*fixed, level)["relative_rmse"].get<double>());
+  }
+}
+
 TEST_CASE("SRBF: descents that go on where little is won end lower, at every level") {
   const auto btf = realistic_btf(2, "regular:3x8");
   const auto fit_with = [&](const std::string& decrease) {
