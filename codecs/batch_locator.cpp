@@ -10,7 +10,6 @@ namespace weft {
 
 namespace {
 
-using Int4 = std::int32_t __attribute__((vector_size(16)));
 using UShort4 = std::uint16_t __attribute__((vector_size(8)));
 
 // Bounds that rounding may bring below 0: of a point on the border of two faces either answers.
