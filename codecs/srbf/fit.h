@@ -18,10 +18,10 @@ struct FitOptions {
   Quantity quantity = Quantity::radiance;
   Storage storage = Storage::half;
   Filtering filtering = Filtering::values;
-  /// Of L-BFGS, a descent below the top; there four times as many.
+  /// Of L-BFGS, a descent; at the top four times as many.
   int iterations = DescentLimits{}.iterations;
-  /// A descent below the top ends where ten iterations lower what is minimised, pulls included, by
-  /// less, relatively; there at a fifth of it.
+  /// A descent ends where ten iterations lower what is minimised, pulls included, by less,
+  /// relatively; at the top by less than a fifth of it.
   double decrease = DescentLimits{}.decrease;
   int starts = 4;            ///< descents at the top, each from another guess
   int sweeps = 1;            ///< over a level, after the one that starts from its parents

@@ -17,6 +17,14 @@ HemisphereSampling named(const std::string& name) {
   return HemisphereSampling(named_directions(name));
 }
 
+DirectionLanes sixteen_of(const Direction& direction) {
+  DirectionLanes lanes;
+  lanes.x.fill(direction.x);
+  lanes.y.fill(direction.y);
+  lanes.z.fill(direction.z);
+  return lanes;
+}
+
 // Weight of each direction; those of several entries are added.
 std::map<int, float> weights(const HemisphereSampling& sampling, const RingStencil& rings,
                              const Direction& direction) {
@@ -92,10 +100,7 @@ TEST_CASE("A direction by itself stands where it does among sixteen, on axes and
     for (const Direction& sampled : sampling.directions()) asked.push_back(sampled);
     for (const Direction& d : asked) {
       INFO(name << ": " << d.x << ' ' << d.y << ' ' << d.z);
-      DirectionLanes lanes;
-      lanes.x.fill(d.x);
-      lanes.y.fill(d.y);
-      lanes.z.fill(d.z);
+      const DirectionLanes lanes = sixteen_of(d);
       const StencilLane among = rings.locate(sampling, lanes)[7];
       std::map<int, float> sum;
       for (std::size_t k = 0; k < 4; ++k) sum[among.index[k]] += among.weight[k];
@@ -105,10 +110,7 @@ TEST_CASE("A direction by itself stands where it does among sixteen, on axes and
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const Direction& none : {Direction(nan, nan, nan), Direction(nan, 0.6F, 0.8F),
                                   Direction(0.6F, nan, 0.8F), Direction(0.6F, 0.8F, nan)}) {
-      DirectionLanes lanes;
-      lanes.x.fill(none.x);
-      lanes.y.fill(none.y);
-      lanes.z.fill(none.z);
+      const DirectionLanes lanes = sixteen_of(none);
       for (const StencilLane& nowhere :
            {rings.locate(sampling, none), StencilLane(rings.locate(sampling, lanes)[3])}) {
         for (std::size_t k = 0; k < 4; ++k) {
@@ -137,10 +139,7 @@ TEST_CASE("From 2 to 32 rings, theta and phi are those that were asked for") {
     for (int i = 0; i < 3000; ++i) {
       const double theta = radians(80 * std::fmod(0.618 * i, 1.0));
       const Direction asked = from_spherical(theta, radians(360 * std::fmod(0.755 * i, 1.0)));
-      DirectionLanes lanes;
-      lanes.x.fill(asked.x);
-      lanes.y.fill(asked.y);
-      lanes.z.fill(asked.z);
+      const DirectionLanes lanes = sixteen_of(asked);
       for (const StencilLane& s :
            {rings.locate(sampling, asked), StencilLane(rings.locate(sampling, lanes)[12])}) {
         double found = 0;
