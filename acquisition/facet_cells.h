@@ -48,7 +48,8 @@ inline std::uint32_t enter(int side, Barycentric& at) {
   const bool turned = u - static_cast<float>(row) + v - static_cast<float>(column) > 1;
   // Along a row, cells that point the way of the whole alternate with those turned round.
   const int position = std::clamp(2 * column + (turned ? 1 : 0), 0, 2 * (side - row) - 2);
-  at = {u - static_cast<float>(row), v - static_cast<float>(position / 2)};
+  const int pair = position / 2;
+  at = {u - static_cast<float>(row), v - static_cast<float>(pair)};
   if (position % 2 == 1) at = {1 - at[0], 1 - at[1]};
   return static_cast<std::uint32_t>(row * (2 * side - row) + position);
 }

@@ -6,19 +6,16 @@
 #include <numeric>
 #include <utility>
 
-#include "tracer/sobol.h"
+#include "btf/random.h"
 
 namespace weft {
 
 namespace {
 
-// One certain answer in so many is checked.
-constexpr std::uint32_t check_every = 256;
 // Connections of later vertices wait for those of further bounces, so that packets are full; where
 // there are more than these (8 MB), as the table knows little and paths are long, they are traced
 // before the next bounce adds its own.
 constexpr std::size_t most_waiting = std::size_t{1} << 18;
-constexpr std::uint32_t most_samples = 64;      // of each texel in a wave
 constexpr std::uint32_t samples_a_check = 16;   // of each texel in a wave, where it may be the last
 constexpr std::uint64_t cell_key = 0x43454C4C;  // stands for a view where paths begin on cells
 // Pairs of random numbers of a path: where in the texel, then three a bounce.
@@ -28,9 +25,6 @@ constexpr std::uint64_t direction_pair(int bounce) {
 }
 constexpr std::uint64_t lobe_pair(int bounce) {
   return 3 * static_cast<std::uint64_t>(bounce) + 2;
-}
-constexpr std::uint64_t check_pair(int bounce) {
-  return 3 * static_cast<std::uint64_t>(bounce) + 3;
 }
 
 }  // namespace
@@ -91,7 +85,7 @@ void PathBlock::trace_waves(std::size_t texels, int samples, std::span<const dou
   const auto spp = static_cast<std::uint32_t>(samples);
   const bool adaptive = !error_scales.empty();
   const bool from_surface = !cells.empty();
-  const std::uint32_t most = adaptive ? samples_a_check : most_samples;
+  const std::uint32_t most = adaptive ? samples_a_check : SamplePoints::most;
   sums_.clear(texels, std::clamp(spp, TexelSums::most_groups, most) / TexelSums::most_groups);
   statistics_ = {};
   statistics_.texels = static_cast<std::int64_t>(texels);
@@ -100,20 +94,22 @@ void PathBlock::trace_waves(std::size_t texels, int samples, std::span<const dou
   covered_.assign(texels, 0);
   for (first_sample_ = 0; first_sample_ < spp && !active_.empty();
        first_sample_ += sums_.wave_size()) {
-    const std::uint32_t end = std::min(first_sample_ + sums_.wave_size(), spp);
+    samples_ = std::min(sums_.wave_size(), spp - first_sample_);
+    for (TexelPoints* points : {&places_, &directions_, &lobes_}) points->texel = TexelPoints::none;
     if (from_surface) {
-      start_paths_on(cells, end);
+      start_paths_on(cells);
     } else {
-      start_paths(end);
+      start_paths();
     }
     follow_paths(from_surface);
-    sums_.fold(active_, end - first_sample_);
-    if (adaptive) drop_settled(error_scales, end == spp);
+    sums_.fold(active_, samples_);
+    if (adaptive) drop_settled(error_scales, first_sample_ + samples_ == spp);
   }
 }
 
-std::array<float, 2> PathBlock::stratified(const Path& path, std::uint64_t pair) const {
-  return sobol_point(path.sample, hash_coordinates(keys_[path.texel], pair));
+void PathBlock::draw(TexelPoints& drawn, std::uint32_t texel, std::uint64_t pair) const {
+  drawn.texel = texel;
+  drawn.points.draw(hash_coordinates(keys_[texel], pair), first_sample_, samples_);
 }
 
 std::array<float, 2> PathBlock::random(const Path& path, std::uint64_t pair) const {
@@ -121,7 +117,7 @@ std::array<float, 2> PathBlock::random(const Path& path, std::uint64_t pair) con
   return {unit_float(bits), unit_float(bits << 32)};
 }
 
-void PathBlock::start_paths(std::uint32_t end_sample) {
+void PathBlock::start_paths() {
   const TraceSettings& s = tracer_.settings();
   const PeriodicScene& scene = tracer_.scene();
   paths_.clear();
@@ -131,9 +127,10 @@ void PathBlock::start_paths(std::uint32_t end_sample) {
   for (const std::uint32_t texel : active_) {
     const int x = left_ + static_cast<int>(texel) % columns_;
     const int y = top_ + static_cast<int>(texel) / columns_;
-    for (std::uint32_t sample = first_sample_; sample < end_sample; ++sample) {
-      const Path path{Rgb(1, 1, 1), -view_, 0, 0, 0, texel, sample};
-      const auto [u, v] = stratified(path, texel_pair);
+    draw(places_, texel, texel_pair);
+    for (const std::uint32_t i : places_.points.along_curve()) {
+      const Path path{Rgb(1, 1, 1), -view_, 0, 0, 0, texel, first_sample_ + i};
+      const auto [u, v] = places_.points[i];
       const float px = (static_cast<float>(x) + u) / static_cast<float>(s.width);
       const float py = 1 - (static_cast<float>(y) + v) / static_cast<float>(s.height);
       send(path,
@@ -142,22 +139,21 @@ void PathBlock::start_paths(std::uint32_t end_sample) {
     }
   }
   flush(Coherence::coherent);
-  const std::int64_t started =
-      static_cast<std::int64_t>(active_.size()) * (end_sample - first_sample_);
+  const std::int64_t started = static_cast<std::int64_t>(active_.size()) * samples_;
   statistics_.paths += started;
   statistics_.primary_rays += started;
   statistics_.missed += started - static_cast<std::int64_t>(next_.size());
 }
 
-void PathBlock::start_paths_on(std::span<const Cell> cells, std::uint32_t end_sample) {
+void PathBlock::start_paths_on(std::span<const Cell> cells) {
   paths_.clear();
   next_.clear();
   for (const std::uint32_t c : active_) {
     const Facet& facet = tracer_.facets()[cells[c].facet];
     if (facet.degenerate()) continue;
-    for (std::uint32_t sample = first_sample_; sample < end_sample; ++sample) {
-      Path path{Rgb(1, 1, 1), -facet.normal, cells[c].facet, 0, 0, c, sample};
-      const auto [x, y] = stratified(path, texel_pair);
+    for (std::uint32_t i = 0; i < samples_; ++i) {
+      Path path{Rgb(1, 1, 1), -facet.normal, cells[c].facet, 0, 0, c, first_sample_ + i};
+      const auto [x, y] = stratified(places_, path, texel_pair);
       // Even over the triangle, as the square is folded along its diagonal.
       const Barycentric at =
           x + y > 1 ? point_of(cells[c], 1 - x, 1 - y) : point_of(cells[c], x, y);
@@ -281,100 +277,15 @@ void PathBlock::arrive_on_curve(const Path& path, Vertex& vertex, Vec3& origin) 
   origin = ray_origin(point.position, vertex.facet_normal);
 }
 
-void PathBlock::connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce) {
-  const LightSet& lights = tracer_.lights();
-  const bool lambert = vertex.bsdf->kind() == Bsdf::Kind::lambert;
-  const Frame& frame = vertex.frame;
-  const Bsdf::ViewTerms terms = vertex.bsdf->view_terms(vertex.view);
-  const std::uint32_t checked =
-      static_cast<std::uint32_t>(
-          hash_coordinates(keys_[path.texel], check_pair(bounce), path.sample) >> 32) %
-      check_every;
-  ShadowQueue& queue = bounce == 0 ? first_connections_ : later_connections_;
-  const std::uint32_t slot = this->slot(path);
-  FloatLanes* wave = sums_.wave(slot, 0);
-  for (std::size_t g = 0; g < groups_; ++g, wave += 3) {
-    const Vec3Lanes& group = lights.group(g);
-    Vec3Lanes local{};
-    local.z = dot(frame.z, group);
-    if (!lambert) {
-      local.x = dot(frame.x, group);
-      local.y = dot(frame.y, group);
-    }
-    RgbLanes value = vertex.bsdf->evaluate(local, terms);
-    value.r *= path.throughput.x;
-    value.g *= path.throughput.y;
-    value.b *= path.throughput.z;
-    const std::uint16_t facing = bits_of_lanes(dot(vertex.facet_normal, group) > 0);
-    const auto [known, visible] = vertex.answers[g];
-    const IntLanes arrives = lanes_of_bits(visible & facing);
-    const FloatLanes zero{};
-    wave[0] += select(arrives, value.r, zero);
-    wave[1] += select(arrives, value.g, zero);
-    wave[2] += select(arrives, value.b, zero);
-    // A value that is not a number goes on, to be refused where the view is stored.
-    const auto asked = static_cast<std::uint16_t>(lights.used_lanes(g) & facing &
-                                                  ~bits_of_lanes(value.r + value.g + value.b <= 0));
-    statistics_.visibility_queries += std::popcount(unsigned{asked});
-    for (unsigned left = asked & ~known; left != 0; left &= left - 1) {
-      const int i = std::countr_zero(left);
-      queue.add(g * lanes + static_cast<std::size_t>(i),
-                {origin, slot, ShadowQueue::Answer::unknown, value.r[i], value.g[i], value.b[i]});
-    }
-    // Light l is checked where l % 256 is the number drawn: each with a chance of 1 / 256.
-    const std::size_t first = g * lanes % check_every;
-    if (checked >= first && checked < first + lanes) {
-      const auto i = static_cast<int>(checked - first);
-      if (((asked & known) >> i & 1) != 0) {
-        queue.add(
-            g * lanes + static_cast<std::size_t>(i),
-            {origin, slot,
-             (visible >> i & 1) != 0 ? ShadowQueue::Answer::visible : ShadowQueue::Answer::hidden,
-             value.r[i], value.g[i], value.b[i]});
-      }
-    }
-  }
-}
-
-void PathBlock::add_indirect(const Path& path, const RgbLanes* indirect) {
-  FloatLanes* wave = sums_.wave(slot(path), 0);
-  for (std::size_t g = 0; g < groups_; ++g, wave += 3) {
-    wave[0] += indirect[g].r * path.throughput.x;
-    wave[1] += indirect[g].g * path.throughput.y;
-    wave[2] += indirect[g].b * path.throughput.z;
-  }
-}
-
-void PathBlock::trace_connections(ShadowQueue& queue, Coherence coherence) {
-  const auto add = [&](std::size_t light, const ShadowQueue::Connection& c, float weight) {
-    FloatLanes* wave = sums_.wave(c.slot, light / lanes);
-    wave[0][light % lanes] += weight * c.r;
-    wave[1][light % lanes] += weight * c.g;
-    wave[2][light % lanes] += weight * c.b;
-  };
-  const auto arrive = [&](std::size_t light, const ShadowQueue::Connection& c, bool visible) {
-    ++statistics_.shadow_rays;
-    if (c.answer == ShadowQueue::Answer::unknown) {
-      if (visible) add(light, c, 1);
-      return;
-    }
-    ++statistics_.answers_checked;
-    if (visible == (c.answer == ShadowQueue::Answer::visible)) return;
-    ++statistics_.wrong_answers;
-    add(light, c, visible ? check_every : -static_cast<float>(check_every));
-  };
-  statistics_.rays_traced_on +=
-      queue.trace(tracer_.scene(), tracer_.lights().directions(), coherence, log_, arrive);
-}
-
 bool PathBlock::scatter(Path& path, const Vertex& vertex, int bounce) {
-  const auto [u, v] =
-      bounce == 0 ? stratified(path, direction_pair(bounce)) : random(path, direction_pair(bounce));
+  const auto [u, v] = bounce == 0 ? stratified(directions_, path, direction_pair(bounce))
+                                  : random(path, direction_pair(bounce));
   const bool lambert = vertex.bsdf->kind() == Bsdf::Kind::lambert;
   const bool dim = max_component(path.throughput) < PathEnd::dim;
   std::array<float, 2> others{0, 0};  // lobe, roulette
   if (!lambert || dim) {
-    others = bounce == 0 ? stratified(path, lobe_pair(bounce)) : random(path, lobe_pair(bounce));
+    others =
+        bounce == 0 ? stratified(lobes_, path, lobe_pair(bounce)) : random(path, lobe_pair(bounce));
   }
   const Bsdf::Sample sample = vertex.bsdf->sample(vertex.view, {others[0], u, v});
   if (std::isnan(sample.pdf)) ++statistics_.invalid;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "acquisition/packet_log.h"
+#include "acquisition/sample_points.h"
 #include "acquisition/shadow_queue.h"
 #include "acquisition/texel_sums.h"
 #include "acquisition/view_tracer.h"
@@ -79,9 +80,24 @@ class PathBlock {
     const RgbLanes* indirect = nullptr;  // light reflected before; null where it is to be traced
   };
 
-  // Two numbers of a pair of dimensions, for a path.
-  std::array<float, 2> stratified(const Path& path, std::uint64_t pair) const;
+  // A pair of dimensions of one texel's paths in a wave: they come texel by texel.
+  struct TexelPoints {
+    std::uint32_t texel = none;
+    SamplePoints points;
+    static constexpr std::uint32_t none = 0xFFFFFFFF;
+  };
+
+  // Two numbers of a pair of dimensions, for a path; `drawn` keeps those of its texel.
+  std::array<float, 2> stratified(TexelPoints& drawn, const Path& path, std::uint64_t pair) const {
+    if (drawn.texel != path.texel) draw(drawn, path.texel, pair);
+    return drawn.points[path.sample - first_sample_];
+  }
+  void draw(TexelPoints& drawn, std::uint32_t texel, std::uint64_t pair) const;
   std::array<float, 2> random(const Path& path, std::uint64_t pair) const;
+  // The pair that decides what is checked at a vertex; others of a bounce are before it.
+  static constexpr std::uint64_t check_pair(int bounce) {
+    return 3 * static_cast<std::uint64_t>(bounce) + 3;
+  }
   // Which sums of the wave a path adds to.
   std::uint32_t slot(const Path& path) const {
     return sums_.slot(path.texel, path.sample - first_sample_);
@@ -89,8 +105,8 @@ class PathBlock {
   // Traces texels by paths from the eye, or cells (where there are any) by paths that leave them.
   void trace_waves(std::size_t texels, int samples, std::span<const double> error_scales,
                    std::span<const Cell> cells);
-  void start_paths(std::uint32_t end_sample);
-  void start_paths_on(std::span<const Cell> cells, std::uint32_t end_sample);
+  void start_paths();
+  void start_paths_on(std::span<const Cell> cells);
   // Traces the ray that `path` is to follow, packet by packet; keeps the paths that hit.
   void send(const Path& path, const Vec3& origin, Coherence coherence);
   void flush(Coherence coherence);
@@ -104,6 +120,10 @@ class PathBlock {
   void arrive_on_curve(const Path& path, Vertex& vertex, Vec3& origin) const;
   // Adds the light that the path's vertex reflects directly, from every light.
   void connect(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce);
+  // The same: `reflect` gives what sixteen directions of lights are worth, were they seen.
+  template <typename Reflect>
+  void connect_all(const Path& path, const Vertex& vertex, const Vec3& origin, int bounce,
+                   const Reflect& reflect);
   // Adds the light that the path's vertex reflects and that was reflected before, from the cache.
   void add_indirect(const Path& path, const RgbLanes* indirect);
   void trace_connections(ShadowQueue& queue, Coherence coherence);
@@ -115,6 +135,10 @@ class PathBlock {
   // Keeps the texels that need more samples.
   void drop_settled(std::span<const double> error_scales, bool last);
 
+  HitPacket packet_{};
+  TexelPoints places_;      // in the texel
+  TexelPoints directions_;  // of the first bounce
+  TexelPoints lobes_;       // of the first bounce
   const ViewTracer& tracer_;
   PacketLog* log_;
   std::size_t groups_;  // of sixteen lights
@@ -126,12 +150,12 @@ class PathBlock {
   std::vector<std::uint32_t> active_;  // texels that get more samples
   std::vector<std::uint32_t> covered_;
   std::uint32_t first_sample_ = 0;   // of the wave
+  std::uint32_t samples_ = 0;        // of each texel in the wave
   std::vector<std::uint64_t> keys_;  // of each texel, for its random numbers
   std::vector<Path> paths_;
   std::vector<Path> next_;
   std::array<const VisibilityTable::Answer*, lanes> answers_{};  // to paths, sixteen in a row
   std::array<Path, lanes> sent_;
-  HitPacket packet_{};
   std::size_t sent_count_ = 0;
   ShadowQueue first_connections_;
   ShadowQueue later_connections_;  // of paths that were reflected before

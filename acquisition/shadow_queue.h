@@ -37,7 +37,7 @@ class ShadowQueue {
   /// Of all lights.
   std::size_t size() const { return size_; }
 
-  /// Traces all, then forgets them. Sixteen rays whose slots are a texel's or more apart go as
+  /// Traces all, then forgets them. Sixteen rays that are not all of one texel go as
   /// incoherent ones, whatever is asked for: Embree's coherent packets pay within a texel, and cost
   /// half as much again beyond.
   /// @param log     gets a copy of every packet before it is traced; none where null.
@@ -56,8 +56,8 @@ class ShadowQueue {
         for (std::size_t i = 0; i < count; ++i) packet.set(i, queue[first + i].origin, lights[l]);
         const auto active = static_cast<std::uint16_t>((1U << count) - 1U);
         if (log != nullptr) log->add(packet, active, coherence);
-        const bool near =
-            queue[first + count - 1].slot - queue[first].slot < TexelSums::most_groups;
+        const bool near = TexelSums::texel_of(queue[first].slot) ==
+                          TexelSums::texel_of(queue[first + count - 1].slot);
         traced_on += scene.occluded(packet, active, near ? coherence : Coherence::incoherent);
         for (std::size_t i = 0; i < count; ++i) arrive(l, queue[first + i], !(packet.tfar[i] < 0));
       }

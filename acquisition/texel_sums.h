@@ -30,6 +30,8 @@ class TexelSums {
   std::uint32_t slot(std::uint32_t texel, std::uint32_t sample) const {
     return texel * most_groups + sample / group_size_;
   }
+  /// Of a slot.
+  static std::uint32_t texel_of(std::uint32_t slot) { return slot / most_groups; }
   /// Three, R, G and B, for each group of sixteen lights from `group` on.
   FloatLanes* wave(std::uint32_t slot, std::size_t group) {
     return &wave_[(slot * light_groups_ + group) * 3];

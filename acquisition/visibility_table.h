@@ -66,7 +66,7 @@ class VisibilityTable {
 
  private:
   static constexpr int refinement = 4;  // cells a side that a cell is cut into
-  static constexpr std::size_t parts = refinement * refinement;
+  static constexpr std::size_t parts = std::size_t{refinement} * refinement;
 
   struct Rows {
     std::uint32_t first : 31 = 0;

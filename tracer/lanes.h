@@ -33,6 +33,10 @@ inline FloatLanes all_lanes(float v) {
   return FloatLanes{} + v;
 }
 
+inline RgbLanes operator*(const RgbLanes& a, const Rgb& b) {
+  return {a.r * b.x, a.g * b.y, a.b * b.z};
+}
+
 // The formulas that are written once for a float and for lanes use these.
 
 inline float select(bool condition, float yes, float no) {
@@ -78,10 +82,11 @@ inline FloatLanes dot(const Vec3Lanes& a, const Vec3Lanes& b) {
 
 /// table[index] of each lane; indices in [0, 4 * lanes). Such a table fits in registers, of which
 /// lookups are cheaper than gathering from memory.
-inline FloatLanes look_up(const std::array<float, 4 * lanes>& table, const IntLanes& index) {
+inline FloatLanes look_up(const std::array<float, std::size_t{4} * lanes>& table,
+                          const IntLanes& index) {
 #ifdef __AVX512DQ__
   const auto& i = reinterpret_cast<const __m512i&>(index);
-  const auto quarter = [&](int n) { return _mm512_loadu_ps(table.data() + n * lanes); };
+  const auto quarter = [&](std::size_t n) { return _mm512_loadu_ps(table.data() + n * lanes); };
   const __m512 low = _mm512_permutex2var_ps(quarter(0), i, quarter(1));  // by five bits of i
   const __m512 high = _mm512_permutex2var_ps(quarter(2), i, quarter(3));
   return select(index < 2 * lanes, low, high);
