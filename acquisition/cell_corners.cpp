@@ -1,6 +1,9 @@
 #include "acquisition/cell_corners.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 #include "btf/random.h"
 
@@ -26,16 +29,37 @@ Vec3 place_on(const Facet& facet, const Cell& whole, int i, int j, int side) {
 
 }  // namespace
 
+PlaceNumbers::PlaceNumbers(std::size_t places)
+    : entries_(std::bit_ceil(std::max<std::size_t>(2 * places, 16))) {}
+
+// Keys are hashes: their low bits are as good as any.
+std::size_t PlaceNumbers::entry_of(std::uint64_t key) const {
+  std::size_t at = key & (entries_.size() - 1);
+  while (entries_[at].number != none && entries_[at].key != key)
+    at = (at + 1) & (entries_.size() - 1);
+  return at;
+}
+
+void PlaceNumbers::grow() {
+  const std::vector<Entry> old = std::exchange(entries_, std::vector<Entry>(2 * entries_.size()));
+  for (const Entry& entry : old) {
+    if (entry.number != none) entries_[entry_of(entry.key)] = entry;
+  }
+}
+
 std::uint32_t PlaceNumbers::number(const Vec3& point) {
-  const auto [place, is_new] = numbers_.try_emplace(key_of(point), count_);
-  count_ += is_new ? 1 : 0;
-  return place->second;
+  const std::uint64_t key = key_of(point);
+  const Entry& found = entries_[entry_of(key)];
+  if (found.number != none) return found.number;
+  if (2 * ++taken_ > entries_.size()) grow();
+  entries_[entry_of(key)] = {key, count_};
+  return count_++;
 }
 
 std::optional<std::uint32_t> PlaceNumbers::find(const Vec3& point) const {
-  const auto found = numbers_.find(key_of(point));
-  if (found == numbers_.end()) return std::nullopt;
-  return found->second;
+  const Entry& found = entries_[entry_of(key_of(point))];
+  if (found.number == none) return std::nullopt;
+  return found.number;
 }
 
 CellCorners cell_corners(const std::vector<Facet>& facets, std::span<const Cell> wholes, int side,

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "acquisition/facet_cells.h"
@@ -16,6 +15,9 @@ namespace weft {
 /// whatever copy of the tile, has one number.
 class PlaceNumbers {
  public:
+  /// @param places  about how many will be asked for.
+  explicit PlaceNumbers(std::size_t places = 0);
+
   /// The place's number, a new one where it has none yet.
   std::uint32_t number(const Vec3& point);
   /// None where it has none yet.
@@ -25,7 +27,20 @@ class PlaceNumbers {
   std::uint32_t count() const { return count_; }
 
  private:
-  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
+  struct Entry {
+    std::uint64_t key = 0;
+    std::uint32_t number = none;
+  };
+  static constexpr std::uint32_t none = 0xFFFFFFFF;
+
+  // Where the key is, or the free entry where it belongs.
+  std::size_t entry_of(std::uint64_t key) const;
+  void grow();
+
+  // Open addressing, as one miss of the cache a place is what numbering costs: a power of two of
+  // entries, at most half of them taken.
+  std::vector<Entry> entries_;
+  std::size_t taken_ = 0;
   std::uint32_t count_ = 0;
 };
 

@@ -114,7 +114,8 @@ VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, FacetCells fa
     for (std::size_t g = 0; g < groups_; ++g) wanted.push_back(lights.used_lanes(g));
   }
   std::vector<Cell> cells = cells_.all();
-  PlaceNumbers corner_numbers;
+  // Of triangles on a surface half as many.
+  PlaceNumbers corner_numbers(cells.size());
   CellCorners corners = cell_corners(facets, cells, 1, corner_numbers);
   VisibilityInquiry inquiry(facets, lights, scene, std::move(cells), std::move(corners),
                             std::move(wanted));
@@ -139,7 +140,7 @@ VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, FacetCells fa
         fine_answers.insert(fine_answers.end(), &answers[at], &answers[at] + groups_);
       }
     }
-    PlaceNumbers numbers;
+    PlaceNumbers numbers(fine.size());
     CellCorners fine_corners = cell_corners(facets, cut_cells, refinement, numbers);
     VisibilityInquiry fine_inquiry(
         facets, lights, scene, std::move(fine), std::move(fine_corners), std::move(asked),

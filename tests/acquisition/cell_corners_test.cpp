@@ -31,6 +31,20 @@ TEST_CASE("a place has one number in every copy of the tile") {
   CHECK(numbers.count() == 5);
 }
 
+TEST_CASE("places keep their numbers however many come, and however many were expected") {
+  constexpr std::uint32_t side = 300;
+  const auto place = [](std::uint32_t i) {
+    return Vec3(static_cast<float>(i % side) / side, static_cast<float>(i / side) / side, 0.25F);
+  };
+  for (const std::size_t expected : {0UL, 1000UL, 200'000UL}) {
+    PlaceNumbers numbers(expected);
+    for (std::uint32_t i = 0; i < side * side; ++i) REQUIRE(numbers.number(place(i)) == i);
+    for (std::uint32_t i = 0; i < side * side; ++i) REQUIRE(numbers.find(place(i)) == i);
+    REQUIRE_FALSE(numbers.find({0.5F, 0.5F, 0.5F}));
+    REQUIRE(numbers.count() == side * side);
+  }
+}
+
 TEST_CASE("neighbours share their corners, across the tile's border too, and no number is unused") {
   // Two triangles cover the tile: all their corners are one place of the endless surface.
   const std::vector<Facet> facets = facets_of(test::flat(Rgb(1)).mesh);
