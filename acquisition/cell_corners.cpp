@@ -52,7 +52,7 @@ std::uint32_t PlaceNumbers::number(const Vec3& point) {
   const Entry& found = entries_[entry_of(key)];
   if (found.number != none) return found.number;
   if (2 * ++taken_ > entries_.size()) grow();
-  entries_[entry_of(key)] = {key, count_};
+  entries_[entry_of(key)] = {.key = key, .number = count_};
   return count_++;
 }
 

@@ -15,7 +15,7 @@ namespace weft {
 /// whatever copy of the tile, has one number.
 class PlaceNumbers {
  public:
-  /// @param places  about how many will be asked for.
+  /// @param places  about how many different ones will come.
   explicit PlaceNumbers(std::size_t places = 0);
 
   /// The place's number, a new one where it has none yet.

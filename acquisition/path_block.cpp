@@ -1,7 +1,6 @@
 #include "acquisition/path_block.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>

@@ -1,6 +1,5 @@
 // How the paths of a block are connected to the lights.
 #include <bit>
-#include <utility>
 
 #include "acquisition/path_block.h"
 #include "btf/random.h"

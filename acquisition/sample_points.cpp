@@ -1,6 +1,5 @@
 #include "acquisition/sample_points.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include "tracer/sobol.h"
@@ -10,8 +9,8 @@ namespace weft {
 namespace {
 
 FloatLanes unit_floats(const WordLanes& words) {
-  return __builtin_convertvector(reinterpret_cast<const IntLanes&>(words) >> 8 & 0xFFFFFF,
-                                 FloatLanes) *
+  const WordLanes top = words >> 8;  // no sign is left
+  return __builtin_convertvector(reinterpret_cast<const IntLanes&>(top), FloatLanes) *
          (1.0F / 16777216.0F);
 }
 

@@ -11,7 +11,8 @@ namespace weft {
 
 class SamplePoints {
  public:
-  static constexpr std::uint32_t most = 64;
+  static constexpr std::uint32_t most = 64;        ///< at once
+  static_assert(most % lanes == 0 && most < 256);  // counted in bytes
 
   /// Draws points `first` to `first + count` (at most `most`) of the sequence that `key` names: the
   /// same ones as `sobol_point` gives.

@@ -23,7 +23,7 @@ class ShadowQueue {
 
   struct Connection {
     Vec3 origin;
-    std::uint32_t slot;  ///< where the value belongs: near ones are of near places
+    std::uint32_t slot;  ///< of the wave's sums that it adds to
     Answer answer;
     float r, g, b;
   };
@@ -37,7 +37,8 @@ class ShadowQueue {
   /// Of all lights.
   std::size_t size() const { return size_; }
 
-  /// Traces all, then forgets them. Sixteen rays that are not all of one texel go as
+  /// Traces all, then forgets them. Connections come texel by texel where rays are to be
+  /// coherent. Sixteen that are not all of one texel go as
   /// incoherent ones, whatever is asked for: Embree's coherent packets pay within a texel, and cost
   /// half as much again beyond.
   /// @param log     gets a copy of every packet before it is traced; none where null.

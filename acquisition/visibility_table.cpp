@@ -114,8 +114,7 @@ VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, FacetCells fa
     for (std::size_t g = 0; g < groups_; ++g) wanted.push_back(lights.used_lanes(g));
   }
   std::vector<Cell> cells = cells_.all();
-  // Of triangles on a surface half as many.
-  PlaceNumbers corner_numbers(cells.size());
+  PlaceNumbers corner_numbers(cells.size() / 2);  // on a surface of triangles
   CellCorners corners = cell_corners(facets, cells, 1, corner_numbers);
   VisibilityInquiry inquiry(facets, lights, scene, std::move(cells), std::move(corners),
                             std::move(wanted));
@@ -140,7 +139,8 @@ VisibilityTable::VisibilityTable(const std::vector<Facet>& facets, FacetCells fa
         fine_answers.insert(fine_answers.end(), &answers[at], &answers[at] + groups_);
       }
     }
-    PlaceNumbers numbers(fine.size());
+    // Twelve on each rim, most of them shared.
+    PlaceNumbers numbers(6 * uncertain.cells.size());
     CellCorners fine_corners = cell_corners(facets, cut_cells, refinement, numbers);
     VisibilityInquiry fine_inquiry(
         facets, lights, scene, std::move(fine), std::move(fine_corners), std::move(asked),

@@ -13,6 +13,9 @@
 
 using namespace weft;
 
+static_assert(reverse_bits(1U) == 0x80000000U);
+static_assert(reverse_bits(0x12345678U) == 0x1E6A2C48U);
+
 TEST_CASE("the points of a texel's samples are Sobol's, whatever their first and number") {
   SamplePoints points;
   for (const auto& [first, count] : {std::array<std::uint32_t, 2>{0, 64},
