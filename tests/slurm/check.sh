@@ -33,6 +33,9 @@ trap 'exit 1' INT TERM
 
 fail() { echo "$*"; exit 1; }
 
+# Files instead of a pipe: what writes into `grep -q` is killed by SIGPIPE when it has not written all by the first match.
+says() { grep -q -- "$1" "${@:2}"; }  # PATTERN FILE...
+
 # Number of the process of ours that traces shard $1 of $work/$2; nothing where there is none.
 process_of() {
   local folder command
@@ -82,11 +85,12 @@ wait_until 120 no_jobs
 same_dataset whole.btf slurm.btf || fail "differs from the dataset of one run"
 # shellcheck disable=SC2086
 [[ $(stat -c '%n %i %y' $kept) == "$before" ]] || fail "finished views were written again"
-cat slurm-*.out | grep -q 'shards 1 of 3, .*try 2 of 2' || fail "not exactly the killed shard was submitted again"
+says 'shards 1 of 3, .*try 2 of 2' slurm-*.out || fail "not exactly the killed shard was submitted again"
 "$weft" validate slurm.btf --quiet || fail "is not valid"
 
 echo "== submitted when there is nothing to do, and with other settings"
-"$script" -- checker.toml -o slurm.btf "${settings[@]}" | grep -q 'is finished' || fail "does not see that all is done"
+"$script" -- checker.toml -o slurm.btf "${settings[@]}" >again.txt
+says 'is finished' again.txt || fail "does not see that all is done"
 code=0
 "$script" -- checker.toml -o slurm.btf "${settings[@]}" --seed 7 2>error || code=$?
 [[ $code == 2 && $(<error) == *'other settings'* ]] || fail "other settings are not refused: $code, $(<error)"
@@ -107,7 +111,7 @@ rm -f slurm-*.out
 WEFT=$work/mortal "$script" --shards=2 --tries=2 -- checker.toml -o lost.btf --texels 4 --directions regular:2x3 --spp 1
 wait_until 120 no_jobs
 [[ ! -e lost.btf/btf.json ]] || fail "was finished without shard 1"
-cat slurm-*.out | grep -q 'shards 1 of 2 are still missing views after 2 tries' || fail "does not say which shard is lost"
+says 'shards 1 of 2 are still missing views after 2 tries' slurm-*.out || fail "does not say which shard is lost"
 count() { echo $#; }
 [[ $(count slurm-*_1.out) == 2 ]] || fail "the lost shard was not tried twice"
 [[ $(count slurm-*_0.out) == 1 ]] || fail "the whole shard was tried again"
