@@ -128,9 +128,9 @@ void bench_acquire(const BenchAcquireOptions& options, Session& session) {
   session.say(fmt::format("{:15} {:>9} {:>12} {:>12} {:>9} {:>9} {:>9}", "", "seconds", "samples/s",
                           "rays/s", "roofline", "speedup", "RMSE"));
   std::vector<Bar> bars;
+  const fs::path dataset = fs::temp_directory_path() / fmt::format("weft_bench_{}.btf", getpid());
   for (const auto& [name, mesostructure] : chosen) {
     Progress progress(name, session.quiet || session.json);
-    const fs::path dataset = fs::temp_directory_path() / fmt::format("weft_bench_{}.btf", getpid());
     const AcquisitionBench b = bench_acquisition(name, mesostructure, settings, dataset, progress);
     session.measured["structures"][name] = json_of(b);
     std::ranges::move(acquisition_bars(b), std::back_inserter(bars));
@@ -145,7 +145,9 @@ void bench_acquire(const BenchAcquireOptions& options, Session& session) {
                       100 * c->bias, 100 * c->rms_difference, 100 * c->standard_error));
     }
   }
-  const std::vector<AcquisitionCost> costs = acquisition_costs(chosen.front().second, settings);
+  Progress progress("costs", session.quiet || session.json);
+  const std::vector<AcquisitionCost> costs =
+      acquisition_costs(chosen.front().second, settings, dataset, progress);
   for (const AcquisitionCost& cost : costs) {
     session.measured["costs"][cost.size].push_back(
         {{"factor", cost.factor}, {"seconds", cost.seconds}});

@@ -49,8 +49,8 @@ jq -r '
   ($s | to_entries[] | select(.value.indirect_cache) | .key as $name | .value.indirect_cache
     | [$name, (.full_dataset_seconds | round(1)), (.samples_per_second / 1e6 | round(0)), (100 * .bias | round(3)), (100 * .rms_difference | round(3)), (100 * .standard_error | round(3))] | row),
   "",
-  "How the time grows with each size, the others held (`\($names[0])`, tracing alone, seconds):",
+  "How the time grows with each size, the others held (`\($names[0])`, whole datasets as above but of evenly spread directions, seconds; `x 4` is the whole of each):",
   "",
   "| | x 1 | x 2 | x 4 |",
   "|---|---:|---:|---:|",
-  (.costs | to_entries[] | [.key, (.value[].seconds | round(3))] | row)' "$bench" >"$docs/results/acquisition.md"
+  (.costs | to_entries[] | [.key, (.value[].seconds | round(1))] | row)' "$bench" >"$docs/results/acquisition.md"

@@ -1,5 +1,6 @@
 #include "study/acquisition_bench.h"
 
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -292,64 +293,48 @@ std::vector<Bar> acquisition_bars(const AcquisitionBench& b) {
 namespace {
 
 constexpr std::array<int, 3> cost_factors = {1, 2, 4};
-constexpr int cost_runs = 5;
+constexpr int cost_runs = 3;
 
-struct CostRun {
-  ViewTracer tracer;
-  std::vector<Direction> views;
-  double seconds = std::numeric_limits<double>::infinity();  // the least so far
-};
-
-// `size` times `factor` a quarter of what the settings say, all others half of it.
-CostRun cost_run(const std::shared_ptr<const TraceableStructure>& structure,
-                 const AcquisitionSettings& settings, const std::string& size, int factor) {
+// The settings with `size` at `factor` quarters of what they say. Directions are evenly spread, so
+// that few of them are as steep on average as many.
+AcquisitionSettings part_of(const AcquisitionSettings& settings, const std::string& size,
+                            int factor) {
   const auto part = [&](const std::string& name, std::size_t whole) {
-    return std::max<std::size_t>(1, whole * (name == size ? factor : 2) / 4);
+    return name == size ? std::max<std::size_t>(1, whole * factor / 4) : whole;
   };
-  // In the middles of even steps, so that few are as steep on average as many.
-  const auto some_of = [](const std::vector<Direction>& all, std::size_t count) {
-    std::vector<Direction> some;
-    for (std::size_t i = 0; i < count; ++i)
-      some.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
-    return some;
-  };
-  const std::vector<Direction> views = named_directions(settings.views);
-  const std::vector<Direction> lights = named_directions(settings.lights);
-  TraceSettings trace = settings.trace;
-  trace.height = static_cast<int>(part("texels", static_cast<std::size_t>(trace.height)));
-  trace.spp = static_cast<int>(part("spp", static_cast<std::size_t>(trace.spp)));
-  trace.views = views.size();  // the table is made as for all of them
-  return {{structure, some_of(lights, part("lights", lights.size())), trace},
-          some_of(views, part("views", std::min<std::size_t>(views.size(), 32)))};
+  AcquisitionSettings some = settings;
+  some.trace.height = static_cast<int>(part("texels", static_cast<std::size_t>(some.trace.height)));
+  some.trace.spp = static_cast<int>(part("spp", static_cast<std::size_t>(some.trace.spp)));
+  some.views = fmt::format("fibonacci:{}", part("views", named_directions(settings.views).size()));
+  some.lights =
+      fmt::format("fibonacci:{}", part("lights", named_directions(settings.lights).size()));
+  return some;
 }
 
 }  // namespace
 
 std::vector<AcquisitionCost> acquisition_costs(const Mesostructure& mesostructure,
-                                               const AcquisitionSettings& settings) {
-  const auto structure = std::make_shared<const TraceableStructure>(mesostructure);
+                                               const AcquisitionSettings& settings,
+                                               const std::filesystem::path& folder,
+                                               Progress& progress) {
   std::vector<AcquisitionCost> costs;
   for (const std::string size : {"texels", "spp", "views", "lights"}) {
-    std::vector<CostRun> runs;
     for (const int factor : cost_factors)
-      runs.push_back(cost_run(structure, settings, size, factor));
-    // In turn, so that the machine's slower moments fall on all.
-    for (int i = 0; i < cost_runs; ++i) {
-      for (CostRun& run : runs) {
-        run.seconds = std::min(run.seconds, seconds_of([&] {
-                                 for (std::size_t v = 0; v < run.views.size(); ++v)
-                                   run.tracer.trace(run.views[v], v);
-                               }));
-      }
+      costs.push_back({size, factor, std::numeric_limits<double>::infinity()});
+  }
+  // In turn, so that the machine's slower moments fall on all.
+  for (int i = 0; i < cost_runs; ++i) {
+    for (AcquisitionCost& cost : costs) {
+      const AcquisitionSettings some = part_of(settings, cost.size, cost.factor);
+      cost.seconds =
+          std::min(cost.seconds, acquire_once(mesostructure, some, folder, progress).seconds);
     }
-    for (std::size_t i = 0; i < runs.size(); ++i)
-      costs.push_back({size, cost_factors[i], runs[i].seconds});
   }
   return costs;
 }
 
 std::vector<Bar> cost_bars(const std::vector<AcquisitionCost>& costs) {
-  constexpr double linear = 4.2;  // of four times as much; a twentieth for the clock
+  constexpr double linear = 4;  // of four times as much
   constexpr double clearly_less = 3;
   std::vector<Bar> bars;
   double one = 0;

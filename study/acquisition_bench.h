@@ -58,16 +58,19 @@ AcquisitionBench bench_acquisition(const std::string& name, const Mesostructure&
 /// What two cores are to reach on 64 x 64 texels, ubo81 and 64 spp: more where all is Lambert.
 std::vector<Bar> acquisition_bars(const AcquisitionBench& bench);
 
-/// One row of the table of costs: seconds of tracing with one size multiplied.
+/// One row of the table of costs: seconds of a whole dataset with one size multiplied.
 struct AcquisitionCost {
   std::string size;  ///< texels (a side's square), spp, views or lights
   int factor = 1;
-  double seconds = 0;  ///< the least of five runs; without the visibility table's making
+  double seconds = 0;  ///< from the structure to the written dataset, the least of three runs
 };
 
-/// How the time grows with each size: 1, 2 and 4 times a quarter of what `settings` say.
+/// How the time grows with each size: 1, 2 and 4 times a quarter of what `settings` say, the others
+/// held. As many directions as theirs, but evenly spread (`fibonacci`). `folder` is removed again.
 std::vector<AcquisitionCost> acquisition_costs(const Mesostructure& mesostructure,
-                                               const AcquisitionSettings& settings);
+                                               const AcquisitionSettings& settings,
+                                               const std::filesystem::path& folder,
+                                               Progress& progress);
 
 /// Time grows no faster than linearly, and clearly slower with lights.
 /// @param costs  as `acquisition_costs` returns them.

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "acquisition/view_tracer.h"
 #include "btf/hemisphere_sampling.h"
@@ -140,26 +142,32 @@ TEST_CASE("texels that all samples do not settle are counted") {
 TEST_CASE("stopping early is biased by less than a tenth of the target in the mean", "[slow]") {
   // Mean over many runs against many samples; the tile's mean, and texel by texel as far as the
   // noise of the runs lets see.
-  const Runs fixed = run(tracer_of(test::checker(64), 4096, 0), view, 16, 0);
-  const std::vector<double> scales = scales_of(fixed.mean);
-  for (const double target : {0.08, 0.04, 0.02}) {
-    constexpr int count = 256;
-    const Runs runs = run(tracer_of(test::checker(64), 1 << 16, target), view, count, 1000);
-    double bias = 0;
-    double square = 0;
-    double noise = 0;
-    for (std::size_t k = 0; k < runs.mean.size(); ++k) {
-      const double d = (runs.mean[k] - fixed.mean[k]) / scales[k / texels];
-      bias += d / static_cast<double>(runs.mean.size());
-      square += d * d / static_cast<double>(runs.mean.size());
-      noise += (runs.variance[k] / count + fixed.variance[k] / 16) /
-               std::pow(scales[k / texels], 2) / static_cast<double>(runs.mean.size());
+  const std::string scenes = std::string(WEFT_SOURCE_DIR) + "/scenes/mesostructures/";
+  for (const std::string name : {"checker_lambert", "checker"}) {
+    const Mesostructure structure =
+        read_mesostructure(scenes + name + ".toml", std::vector<std::string>{"resolution=64"});
+    const Runs fixed = run(tracer_of(structure, 4096, 0), view, 16, 0);
+    const std::vector<double> scales = scales_of(fixed.mean);
+    for (const double target : {0.08, 0.04, 0.02, 0.01}) {
+      const int count = target < 0.02 ? 64 : 256;
+      const Runs runs = run(tracer_of(structure, 1 << 16, target), view, count, 1000);
+      double bias = 0;
+      double square = 0;
+      double noise = 0;
+      for (std::size_t k = 0; k < runs.mean.size(); ++k) {
+        const double d = (runs.mean[k] - fixed.mean[k]) / scales[k / texels];
+        bias += d / static_cast<double>(runs.mean.size());
+        square += d * d / static_cast<double>(runs.mean.size());
+        noise += (runs.variance[k] / count + fixed.variance[k] / 16) /
+                 std::pow(scales[k / texels], 2) / static_cast<double>(runs.mean.size());
+      }
+      INFO(name << ", target " << target << ", reached " << relative_error(runs, scales) << " with "
+                << runs.spp << " spp, " << 100 * runs.unsettled
+                << " % unsettled: the tile's mean is off by " << bias << ", a texel by "
+                << std::sqrt(std::max(0.0, square - noise)) << " (noise " << std::sqrt(noise)
+                << ")");
+      CHECK(std::abs(bias) < 0.1 * target);
+      CHECK(square - noise < std::pow(0.25 * target, 2));
     }
-    INFO("target " << target << ", reached " << relative_error(runs, scales) << " with " << runs.spp
-                   << " spp: the tile's mean is off by " << bias << ", a texel by "
-                   << std::sqrt(std::max(0.0, square - noise)) << " (noise " << std::sqrt(noise)
-                   << ")");
-    CHECK(std::abs(bias) < 0.1 * target);
-    CHECK(square - noise < std::pow(0.25 * target, 2));
   }
 }

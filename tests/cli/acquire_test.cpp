@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -121,30 +122,72 @@ TEST_CASE("acquire --error reports the samples that were spent, and what stayed 
 }
 
 TEST_CASE("a dataset several times as large as --memory is traced within it", "[heavy]") {
-  // 24 views of 256 x 256 texels and 64 lights: 50 MB each in floats, 1.2 GB in all.
+  // 256 x 256 texels and 64 lights: 50 MB a view in floats.
   const Place place;
-  const std::vector<std::string> large = {
-      "--texels",     "256",   "--views", "regular:3x8",   "--lights",
-      "fibonacci:64", "--spp", "1",       "--max-bounces", "0"};
-  const Outcome refused = place.acquire(with(large, {"--memory", "60MiB"}));
-  CHECK(refused.exit_code == 2);
-  CHECK_FALSE(fs::exists(place.folder.path / "a.btf"));
-  const std::string words = "expected at least ";
-  const auto at = refused.err.find(words);
-  INFO(refused.err);
-  REQUIRE(at != std::string::npos);
-  const long least = std::stol(refused.err.substr(at + words.size()));
-  CHECK(least > 60);
-  CHECK(least < 300);
-  constexpr long allowed = 8;  // over the least, so that it is not refused by chance
-  constexpr long margin = 16;  // for what is not counted: compression buffers, the allocator
-  const Outcome outcome =
-      place.acquire(with(large, {"--memory", std::to_string(least + allowed) + "MiB"}));
-  INFO(outcome.err);
-  REQUIRE(outcome.exit_code == 0);
-  INFO("at least " << least << " MiB; took " << outcome.peak_kibibytes / 1024 << " MiB");
-  CHECK(outcome.peak_kibibytes / 1024 < least + allowed + margin);
-  CHECK(outcome.peak_kibibytes / 1024 > least / 2);
+  const std::string scenes = std::string(WEFT_SOURCE_DIR) + "/scenes/mesostructures/";
+  struct Structure {
+    std::vector<std::string> arguments;
+    std::string views;
+    bool has_table;
+  };
+  const std::vector<Structure> structures = {
+      {{"flat.toml"}, "regular:3x8", false},  // 1.2 GB in all
+      {{scenes + "checker.toml", "--set", "resolution=64"}, "regular:3x5", true}};
+  for (const auto& [structure, views, has_table] : structures) {
+    INFO(structure.front());
+    const std::vector<std::string> arguments =
+        with(with({"acquire"}, structure),
+             {"-o", "a.btf", "--texels", "256", "--views", views, "--lights", "fibonacci:64",
+              "--spp", "1", "--max-bounces", "0", "--json", "--memory"});
+    const Outcome refused = run_weft(with(arguments, {"60MiB"}), place.folder.path);
+    CHECK(refused.exit_code == 2);
+    CHECK_FALSE(fs::exists(place.folder.path / "a.btf"));
+    const std::string words = "expected at least ";
+    const auto at = refused.err.find(words);
+    INFO(refused.err);
+    REQUIRE(at != std::string::npos);
+    const long least = std::stol(refused.err.substr(at + words.size()));
+    CHECK(least > 60);
+    CHECK(least < 300);
+    constexpr long allowed = 8;  // over the least, so that it is not refused by chance
+    constexpr long margin = 16;  // for what is not counted: compression buffers, the allocator
+    const Outcome outcome =
+        run_weft(with(arguments, {std::to_string(least + allowed) + "MiB"}), place.folder.path);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK((nlohmann::json::parse(outcome.out)["table_rays"] > 1'000'000) == has_table);
+    INFO("at least " << least << " MiB; took " << outcome.peak_kibibytes / 1024 << " MiB");
+    CHECK(outcome.peak_kibibytes / 1024 < least + allowed + margin);
+    CHECK(outcome.peak_kibibytes / 1024 > least / 2);
+    fs::remove_all(place.folder.path / "a.btf");
+  }
+}
+
+TEST_CASE("acquire --set gives the bytes of a file that says so itself") {
+  const Place place;
+  const fs::path& folder = place.folder.path;
+  std::ifstream flat(folder / "flat.toml");
+  std::string text(std::istreambuf_iterator<char>(flat), {});
+  text.replace(text.find("height = 1e-5"), 13, "height = 0.15");
+  text.replace(text.find("0.8, 0.5, 0.2"), 13, "0.5, 0.4, 0.3");
+  std::ofstream(folder / "high.toml") << text;
+  const auto bytes_of = [&](const std::vector<std::string>& arguments) {
+    const Outcome outcome =
+        run_weft(with(with({"acquire"}, arguments), with(small, {"-o", "a.btf"})), folder);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    std::vector<std::string> bytes;
+    for (const std::string file : {"btf.json", "view_000.exr", "view_005.exr"}) {
+      std::ifstream stream(folder / "a.btf" / file, std::ios::binary);
+      bytes.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    }
+    fs::remove_all(folder / "a.btf");
+    return bytes;
+  };
+  const auto high = bytes_of({"high.toml"});
+  CHECK(bytes_of({"flat.toml", "--set", "height=0.15", "--set",
+                  "materials.raised.albedo=[0.5, 0.4, 0.3]"}) == high);
+  CHECK(bytes_of({"flat.toml"}) != high);
 }
 
 TEST_CASE("acquire --indirect cache is a dataset of its own, and for Lambert materials alone") {

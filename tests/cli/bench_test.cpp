@@ -144,7 +144,7 @@ TEST_CASE("bench acquire tells speeds, costs and what they are held to, and leav
     const double growth = rows[2]["seconds"].get<double>() / rows[0]["seconds"].get<double>();
     CHECK(std::ranges::count_if(json["bars"], [&](const Json& bar) {
             return bar["what"] == size + " x 4: time" && bar["value"].get<double>() == growth &&
-                   bar["below"] == (size == "lights" ? 3.0 : 4.2);
+                   bar["below"] == (size == "lights" ? 3.0 : 4.0);
           }) == 1);
   }
 }

@@ -115,4 +115,17 @@ says 'shards 1 of 2 are still missing views after 2 tries' slurm-*.out || fail "
 count() { echo $#; }
 [[ $(count slurm-*_1.out) == 2 ]] || fail "the lost shard was not tried twice"
 [[ $(count slurm-*_0.out) == 1 ]] || fail "the whole shard was tried again"
+echo "== a finishing step that is killed is taken up"
+cat >mortal <<MORTAL
+#!/usr/bin/env bash
+# In a job of Slurm's the first to finish kills its process group: itself and the batch script.
+if [[ -n \${SLURM_JOB_ID-} && \$* == *--finish* ]] && mkdir "$work/killed" 2>/dev/null; then kill -KILL 0; fi
+exec "$weft" "\$@"
+MORTAL
+rm -f slurm-*.out
+WEFT=$work/mortal "$script" --shards=2 -- checker.toml -o taken.btf --texels 4 --directions regular:2x3 --spp 1
+wait_until 120 no_jobs
+[[ -d killed ]] || fail "no finishing step was killed"
+[[ -e taken.btf/btf.json ]] || fail "was not finished by another step"
+! says 'try 2 of' slurm-*.out || fail "shards were submitted again that lacked nothing"
 echo "passed in $SECONDS s"
