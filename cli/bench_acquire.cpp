@@ -41,6 +41,7 @@ const std::vector<Structure> structures = {
 
 std::vector<std::string> names_of_structures() {
   std::vector<std::string> names;
+  names.reserve(structures.size());
   for (const Structure& structure : structures) names.push_back(structure.name);
   return names;
 }
